@@ -46,10 +46,11 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """A way between two places, in both directions.
+    """A way between two places, in both directions unless it is `one_way` from `a` to `b`.
 
     `length_m` None: the straight line. `delay_s` comes on top of driving it (an elevator's ride, a
     door's opening). `open_s`: when it may be passed, as pairs of times; always when empty.
+    `speed_m_s`: nobody drives faster there.
     """
 
     a: str
@@ -59,6 +60,8 @@ class Way:
     delay_s: float = 0.0
     open_s: tuple[tuple[float, float], ...] = ()
     closed: bool = False
+    one_way: bool = False
+    speed_m_s: float | None = None
 
     def passable(self, from_s: float, until_s: float) -> bool:
         """Whether it may be passed at every moment of a span of time."""
@@ -93,7 +96,7 @@ class NavigationGraph:
         count = len(self.places)
         rows, columns, seconds, metres = self._edges(speed_m_s, from_s, until_s)
         times = csr_matrix((seconds, (rows, columns)), shape=(count, count))
-        time_s, before = dijkstra(times, directed=False, return_predecessors=True)
+        time_s, before = dijkstra(times, return_predecessors=True)
         lengths = {
             (row, column): metre for row, column, metre in zip(rows, columns, metres, strict=True)
         }
@@ -103,8 +106,8 @@ class NavigationGraph:
             for place in np.argsort(time_s[origin]):
                 previous = before[origin, place]
                 if previous >= 0:
-                    key = (min(previous, place), max(previous, place))
-                    distance_m[origin, place] = distance_m[origin, previous] + lengths[key]
+                    leg_m = lengths[previous, place]
+                    distance_m[origin, place] = distance_m[origin, previous] + leg_m
         return distance_m, np.asarray(time_s, dtype=np.float64)
 
     def quickest_path(
@@ -123,7 +126,7 @@ class NavigationGraph:
         count = len(self.places)
         rows, columns, seconds, _ = self._edges(speed_m_s, from_s, until_s)
         times = csr_matrix((seconds, (rows, columns)), shape=(count, count))
-        time_s, before = dijkstra(times, directed=False, indices=origin, return_predecessors=True)
+        time_s, before = dijkstra(times, indices=origin, return_predecessors=True)
         if time_s[destination] == inf:
             return ()
         path = [destination]
@@ -138,17 +141,19 @@ class NavigationGraph:
     def _edges(
         self, speed_m_s: float, from_s: float, until_s: float
     ) -> tuple[list[int], list[int], list[float], list[float]]:
-        """The quickest passable way between each two places that have one."""
+        """The quickest passable way from each place to each other that has one."""
         best: dict[tuple[int, int], tuple[float, float]] = {}
         for way in self.ways:
             if not way.passable(from_s, until_s):
                 continue
-            a, b = sorted((self._index[way.a], self._index[way.b]))
+            ends = self._index[way.a], self._index[way.b]
             metres = self._length_m(way)
+            speed = min(speed_m_s, way.speed_m_s or speed_m_s)
             # A way that takes no time would be no edge at all to scipy.
-            seconds = max(metres / speed_m_s + way.delay_s, 1e-9)
-            if (a, b) not in best or seconds < best[a, b][0]:
-                best[a, b] = (seconds, metres)
+            seconds = max(metres / speed + way.delay_s, 1e-9)
+            for edge in (ends,) if way.one_way else (ends, ends[::-1]):
+                if edge not in best or seconds < best[edge][0]:
+                    best[edge] = (seconds, metres)
         rows, columns = [a for a, _ in best], [b for _, b in best]
         return rows, columns, [s for s, _ in best.values()], [m for _, m in best.values()]
 
@@ -174,6 +179,8 @@ class NavigationGraph:
                 mistakes.append(f"{what} leads nowhere")
             if not 0 <= way.delay_s < inf or not 0 <= (way.length_m or 0.0) < inf:
                 mistakes.append(f"{what}: length and delay must be at least 0")
+            if way.speed_m_s is not None and not way.speed_m_s > 0.0:
+                mistakes.append(f"{what}: its speed must be above 0")
             if any(not a <= b for a, b in way.open_s):
                 mistakes.append(f"{what} closes before it opens")
             floors = {self.places[self._index[name]].floor for name in (way.a, way.b)}

@@ -17,6 +17,12 @@ Span = tuple[Seconds, Seconds | None]
 """From when until when; null: for ever."""
 
 
+PlaceName = Annotated[
+    str, Field(min_length=1, max_length=130, pattern=r"^[^\s\x00-\x1f]+( [^\s\x00-\x1f]+)*$")
+]
+"""Any words; of a building's file `FLOOR/PLACE`, or a place's name that no other floor has."""
+
+
 class PlaceEntry(StrictModel):
     """A place of a building, in the frame of its floor."""
 
@@ -26,25 +32,27 @@ class PlaceEntry(StrictModel):
 
 
 class WayEntry(StrictModel):
-    """A way between two places, in both directions.
+    """A way between two places, in both directions unless it is `one_way`.
 
     Without `length_m` the straight line. `delay_s` comes on top (an elevator's ride). `open_s`:
-    when a door may be passed; `closed`: never.
+    when a door may be passed; `closed`: never. `speed_m_s`: nobody is faster there.
     """
 
-    between: tuple[Name, Name]
+    between: tuple[PlaceName, PlaceName]
     kind: WayKind = WayKind.CORRIDOR
     length_m: Length | None = None
     delay_s: Seconds = 0.0
     open_s: tuple[Span, ...] = ()
     closed: bool = False
+    one_way: bool = False
+    speed_m_s: Speed | None = None
 
 
 class GraphEntry(StrictModel):
     """A building: places on floors and the ways between them."""
 
     speed_m_s: Speed = 1.0
-    places: Annotated[dict[Name, PlaceEntry], Field(min_length=1, max_length=2000)]
+    places: Annotated[dict[PlaceName, PlaceEntry], Field(min_length=1, max_length=2000)]
     ways: tuple[WayEntry, ...] = ()
 
 
@@ -53,29 +61,39 @@ class CoordinatesEntry(StrictModel):
 
     speed_m_s: Speed = 1.0
     places: Annotated[
-        dict[Name, tuple[Coordinate, Coordinate]], Field(min_length=1, max_length=2000)
+        dict[PlaceName, tuple[Coordinate, Coordinate]], Field(min_length=1, max_length=2000)
     ]
 
 
 class MatrixEntry(StrictModel):
     """Times from row to column, and distances (as the times if not given); null: no way."""
 
-    places: Annotated[tuple[Name, ...], Field(min_length=1, max_length=2000)]
+    places: Annotated[tuple[PlaceName, ...], Field(min_length=1, max_length=2000)]
     time_s: tuple[tuple[Seconds | None, ...], ...]
     distance_m: tuple[tuple[Length | None, ...], ...] | None = None
 
 
-class TravelEntry(StrictModel):
-    """How one gets from place to place: in exactly one of three forms."""
+class BuildingEntry(StrictModel):
+    """A building's file, beside the delivery file or below its folder."""
 
+    file: Annotated[str, Field(min_length=1, max_length=500)]
+    speed_m_s: Speed = 1.0
+
+
+class TravelEntry(StrictModel):
+    """How one gets from place to place: in exactly one of four forms."""
+
+    building: BuildingEntry | None = None
     graph: GraphEntry | None = None
     coordinates: CoordinatesEntry | None = None
     matrix: MatrixEntry | None = None
 
     @model_validator(mode="after")
     def _one_form(self) -> Self:
-        if sum(form is not None for form in (self.graph, self.coordinates, self.matrix)) != 1:
-            raise ValueError("must have exactly one of 'graph', 'coordinates' and 'matrix'")
+        forms = (self.building, self.graph, self.coordinates, self.matrix)
+        if sum(form is not None for form in forms) != 1:
+            expected = "'building', 'graph', 'coordinates' and 'matrix'"
+            raise ValueError(f"must have exactly one of {expected}")
         return self
 
 
@@ -83,8 +101,8 @@ class RobotEntry(StrictModel):
     """A robot. Without `end` it may end anywhere. `speed` is relative: 2 is twice as fast."""
 
     name: Name
-    start: Name
-    end: Name | None = None
+    start: PlaceName
+    end: PlaceName | None = None
     capacity: Load
     speed: Speed = 1.0
     shift_s: Span = (0.0, None)
@@ -94,7 +112,7 @@ class RobotEntry(StrictModel):
 class VisitEntry(StrictModel):
     """Where and when: `window_s` must be kept, what begins after `due_s` is late and costs."""
 
-    place: Name
+    place: PlaceName
     window_s: Span = (0.0, None)
     due_s: Seconds | None = None
     service_s: Seconds = 0.0
@@ -120,7 +138,7 @@ class ItemEntry(StrictModel):
 class TransfersEntry(StrictModel):
     """Where items may change robots: at the places listed, or anywhere."""
 
-    places: tuple[Name, ...] = ()
+    places: tuple[PlaceName, ...] = ()
     anywhere: bool = False
     together: bool = False
     service_s: Seconds = 0.0

@@ -34,7 +34,7 @@ def find_mistakes(document: DeliveryDocument) -> Iterator[Mistake]:
     yield from _named_twice("robots", robots)
     yield from _named_twice("items", [item.name for item in document.items])
     known = frozenset(place_names(document.travel))
-    for location, name in _places_named(document):
+    for location, name in places_named(document):
         if name not in known:
             yield location, f"there is no place '{name}'; there are {list_names(known)}"
     for location, span in _spans(document):
@@ -53,7 +53,8 @@ def _named_twice(where: str, names: list[str]) -> Iterator[Mistake]:
         seen.add(name)
 
 
-def _places_named(document: DeliveryDocument) -> Iterator[tuple[Location, str]]:
+def places_named(document: DeliveryDocument) -> Iterator[tuple[Location, str]]:
+    """Every place that robots, items and transfers name, and where."""
     for number, robot in enumerate(document.robots):
         yield ("robots", number, "start"), robot.start
         if robot.end is not None:

@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from mend.errors import WrongInputError
 from mend.fleet.scheduling.building_travel import travel_in
+from mend.fleet.scheduling.delivery_building import find_building, in_building
 from mend.fleet.scheduling.delivery_document import (
     DeliveryDocument,
     GraphEntry,
@@ -59,11 +61,16 @@ def read_delivery_file(path: Path) -> Delivery:
         text = read_text(path)
     except DocumentError as error:
         raise DeliveryFileError(str(path), [error.problem]) from error
-    return read_delivery_text(text, source=str(path))
+    return read_delivery_text(text, source=str(path), folder=path.parent)
 
 
-def read_delivery_text(text: str, *, source: str = "delivery") -> Delivery:
-    """Check the text of a delivery file; `source` names it. Raises `DeliveryFileError`."""
+def read_delivery_text(
+    text: str, *, source: str = "delivery", folder: Path | None = None
+) -> Delivery:
+    """Check the text of a delivery file; `source` names it.
+
+    A building's file is looked for below `folder`. Raises `DeliveryFileError`.
+    """
     try:
         content, mistakes = read_document(text)
     except DocumentError as error:
@@ -73,6 +80,9 @@ def read_delivery_text(text: str, *, source: str = "delivery") -> Delivery:
         raise DeliveryFileError(source, [*mistakes, Mistake(1, None, message)])
     document, wrong = validate_part(DeliveryDocument, content)
     mistakes += wrong
+    if document is not None and document.travel.building is not None:
+        document, wrong = _in_building(document, content, folder)
+        mistakes += wrong
     if document is not None:
         mistakes += [
             Mistake(find_line(content, location), None, message)
@@ -89,6 +99,20 @@ def read_delivery_text(text: str, *, source: str = "delivery") -> Delivery:
         line = find_line(content, ("travel",))
         raise DeliveryFileError(source, [Mistake(line, None, str(error))]) from error
     return Delivery(problem, tuple(_infeasibilities(problem, content)))
+
+
+def _in_building(
+    document: DeliveryDocument, content: LinedMapping, folder: Path | None
+) -> tuple[DeliveryDocument | None, list[Mistake]]:
+    """The document with the graph of its building; None where that cannot be read."""
+    assert document.travel.building is not None, "the document names a building"
+    line = find_line(content, ("travel", "building", "file"))
+    try:
+        building = find_building(document.travel.building.file, folder)
+    except WrongInputError as error:
+        return None, [Mistake(line, None, each) for each in str(error).splitlines()]
+    placed, wrong = in_building(document, building)
+    return placed, [Mistake(find_line(content, at), None, message) for at, message in wrong]
 
 
 def _infeasibilities(problem: Problem, content: LinedMapping) -> list[Mistake]:
@@ -219,6 +243,8 @@ def navigation_graph(graph: GraphEntry) -> NavigationGraph:
                 way.delay_s,
                 tuple((from_s, _or_never(until_s)) for from_s, until_s in way.open_s),
                 way.closed,
+                way.one_way,
+                way.speed_m_s,
             )
             for way in graph.ways
         ],

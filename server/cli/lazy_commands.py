@@ -23,6 +23,7 @@ SUMMARIES = {
     "replay": "Tell a run again from its journal.",
     "train-colors": "Learn the colours of objects.",
     "access": "Say who may do what, and see who did what.",
+    "building": "Import, make up, check and draw buildings.",
     "map": "Build and clean up vector maps.",
     "journal": "Check, prune, back up and restore a journal.",
     "scene": "Make up scenes.",
@@ -32,6 +33,7 @@ SUMMARIES = {
 
 
 EXTRA_OF = {
+    "building": "scheduling",
     "check": "scheduling",
     "localize": "localization",
     "map": "localization",

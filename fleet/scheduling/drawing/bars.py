@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 
-from mend.fleet.scheduling.drawing.svg import Svg, color, text_width_px
+from mend.maps.svg import Svg, color, text_width_px
 
 BAR_PX = 9.0
 GAP_PX = 8.0

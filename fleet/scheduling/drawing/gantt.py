@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import floor, log10
 
-from mend.fleet.scheduling.drawing.svg import Svg, color, text_width_px
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Action, RobotSchedule, Schedule
 from mend.fleet.scheduling.tolerance import CHECK_S
+from mend.maps.svg import Svg, color, text_width_px
 
 STRIP_PX = 9.0
 LANE_PX = 20.0

@@ -2,9 +2,9 @@
 
 from mend.fleet.scheduling.drawing.gantt import draw_gantt
 from mend.fleet.scheduling.drawing.route_map import draw_map
-from mend.fleet.scheduling.drawing.svg import Svg
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Schedule
+from mend.maps.svg import Svg
 
 WIDTH_PX = 1000.0
 

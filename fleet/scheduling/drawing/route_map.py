@@ -4,9 +4,9 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import hypot
 
-from mend.fleet.scheduling.drawing.svg import FONT_PX, Svg, color, text_width_px
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Action, Schedule
+from mend.maps.svg import FONT_PX, Svg, color, text_width_px
 
 MARGIN_PX = 70.0
 MOST_HEIGHT_PX = 520.0

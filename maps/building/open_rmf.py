@@ -1,0 +1,328 @@
+"""Buildings as Open-RMF's traffic editor has them (`building.yaml`).
+
+Vertices are points of a floor's drawing in pixels, x right and y down; measured edges say how long
+a pixel is, and fiducials of one name lie above each other. Where the drawing is a map of the globe
+they are degrees of longitude and latitude.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, BeforeValidator, ConfigDict
+
+from mend.errors import WrongInputError
+from mend.maps.building.building import (
+    BuildingDocument,
+    Door,
+    DoorOpening,
+    Elevator,
+    Floor,
+    FloorPlace,
+    Lane,
+    PlaceKind,
+)
+from mend.maps.building.tidying import Imported, tidied
+
+Matrix = NDArray[np.float64]
+
+EARTH_M = 6_378_137.0
+"""The equator's radius (WGS 84)."""
+
+_DECIMALS = 3
+
+Text = Annotated[str, BeforeValidator(str)]
+"""Names may be numbers there."""
+Properties = dict[str, tuple[int, Any]]
+Vertex = (
+    tuple[float, float, float]
+    | tuple[float, float, float, Text]
+    | (tuple[float, float, float, Text, Properties])
+)
+Edge = tuple[int, int] | tuple[int, int, Properties]
+Fiducial = tuple[float, float, Text]
+
+
+class _Lenient(BaseModel):
+    model_config = ConfigDict(extra="ignore")
+
+
+class _Level(_Lenient):
+    elevation: float = 0.0
+    vertices: list[Vertex] = []
+    lanes: list[Edge] = []
+    walls: list[Edge] = []
+    doors: list[Edge] = []
+    measurements: list[Edge] = []
+    fiducials: list[Fiducial] = []
+
+
+class _Lift(_Lenient):
+    level_doors: dict[Text, list[Text]] = {}
+
+
+class _Plan(_Lenient):
+    name: Text = "building"
+    coordinate_system: Literal["reference_image", "wgs84", "cartesian_meters"] = "reference_image"
+    reference_level_name: Text | None = None
+    levels: dict[Text, _Level]
+    lifts: dict[Text, _Lift] = {}
+
+
+def import_open_rmf(content: Any, graphs: Sequence[int] = ()) -> Imported:
+    """The building of a plan that was read; with its lanes of some `graphs` only, where given.
+
+    Raises `WrongInputError`, pydantic's `ValidationError` for what is no such plan.
+    """
+    plan = _Plan.model_validate(content)
+    if not plan.levels:
+        raise WrongInputError("the plan has no levels")
+    notes: list[str] = []
+    frames = _frames(plan)
+    order = sorted(plan.levels, key=lambda each: plan.levels[each].elevation)
+    read = {
+        name: _read_level(name, plan.levels[name], frames[name], graphs, notes) for name in order
+    }
+    elevators = _elevators(plan, read, notes)
+    floors = {name: each.floor for name, each in read.items()}
+    document = BuildingDocument(building=plan.name, floors=floors, elevators=elevators)
+    return tidied(Imported(document, notes))
+
+
+# --- From pixels to metres --------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Similarity:
+    """Turns, scales and shifts points (n, 2)."""
+
+    linear: Matrix
+    shift: Matrix
+
+    def __call__(self, points: Matrix) -> Matrix:
+        return np.asarray(points @ self.linear.T + self.shift)
+
+
+def _frames(plan: _Plan) -> dict[str, _Similarity]:
+    """How each level's vertices become metres in the frame of the reference level."""
+    if plan.coordinate_system == "wgs84":
+        return dict.fromkeys(plan.levels, _from_globe(plan))
+    if plan.coordinate_system == "cartesian_meters":
+        return dict.fromkeys(plan.levels, _Similarity(np.eye(2), np.zeros(2)))
+    reference = plan.reference_level_name or next(iter(plan.levels))
+    if reference not in plan.levels:
+        raise WrongInputError(f"the plan has no level '{reference}', which it names as reference")
+    own = {name: _in_metres(name, each, plan) for name, each in plan.levels.items()}
+    to = _fiducials(plan.levels[reference], own[reference])
+    return {
+        name: _laid_over(own[name], _fiducials(each, own[name]), to)
+        for name, each in plan.levels.items()
+    }
+
+
+def _in_metres(name: str, level: _Level, plan: _Plan) -> _Similarity:
+    """By its own measurements, or where it has none by those of all other levels."""
+    scales = _scales(level) or [each for other in plan.levels.values() for each in _scales(other)]
+    if not scales:
+        raise WrongInputError(
+            f"nothing on level '{name}' is measured: how long a pixel is, is unknown"
+        )
+    scale = float(np.mean(scales))
+    return _Similarity(np.diag([scale, -scale]), np.zeros(2))
+
+
+def _scales(level: _Level) -> list[float]:
+    """Metres per pixel, by each measured edge."""
+    found = []
+    for each in level.measurements:
+        a, b = (level.vertices[end] for end in each[:2])
+        pixels, metres = math.hypot(a[0] - b[0], a[1] - b[1]), _property(each, "distance")
+        if pixels > 0.0 and isinstance(metres, int | float) and metres > 0.0:
+            found.append(metres / pixels)
+    return found
+
+
+def _fiducials(level: _Level, frame: _Similarity) -> dict[str, Matrix]:
+    return {name: frame(np.array([[x, y]]))[0] for x, y, name in level.fiducials}
+
+
+def _laid_over(own: _Similarity, of: Mapping[str, Matrix], to: Mapping[str, Matrix]) -> _Similarity:
+    """Turned and shifted so that fiducials of one name lie best above each other.
+
+    Umeyama, "Least-squares estimation of transformation parameters between two point patterns",
+    IEEE PAMI 13 (1991), equations 40 to 42, without a scale.
+    """
+    both = [name for name in of if name in to]
+    if len(both) < 2:
+        return own
+    a, b = (np.array([each[name] for name in both]) for each in (of, to))
+    u, _, v = np.linalg.svd((b - b.mean(0)).T @ (a - a.mean(0)))
+    turn = u @ np.diag([1.0, np.linalg.det(u @ v)]) @ v
+    shift = b.mean(0) - turn @ a.mean(0)
+    return _Similarity(turn @ own.linear, turn @ own.shift + shift)
+
+
+def _from_globe(plan: _Plan) -> _Similarity:
+    """A plane that touches the globe in the middle of the plan."""
+    points = np.array([each[:2] for level in plan.levels.values() for each in level.vertices])
+    middle = points.mean(axis=0) if len(points) else np.zeros(2)
+    north_m = math.radians(1.0) * EARTH_M
+    linear = np.diag([north_m * math.cos(math.radians(middle[1])), north_m])
+    return _Similarity(linear, -linear @ middle)
+
+
+# --- Levels -----------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class _Read:
+    """A level as a floor, and what its vertices are called there."""
+
+    floor: Floor
+    names: dict[int, str]
+    cabins: dict[str, str]
+
+
+def _read_level(
+    name: str, level: _Level, frame: _Similarity, graphs: Sequence[int], notes: list[str]
+) -> _Read:
+    points = frame(np.array([each[:2] for each in level.vertices], dtype=float).reshape(-1, 2))
+    points = points.round(_DECIMALS) + 0.0
+    lanes = [
+        each for each in level.lanes if not graphs or _property(each, "graph_idx", 0) in graphs
+    ]
+    _require_vertices(name, level)
+    on_lanes = sorted({end for each in lanes for end in each[:2]})
+    names = _names(name, level, on_lanes, notes)
+    places = {
+        names[each]: FloorPlace(
+            x=points[each][0], y=points[each][1], kind=_kind(level.vertices[each])
+        )
+        for each in on_lanes
+    }
+    floor = Floor(
+        height=level.elevation,
+        places=places,
+        lanes=tuple(_lanes(lanes, names)),
+        walls=tuple(_segment(points, each) for each in level.walls),
+        doors=_doors(name, level, points, notes),
+    )
+    cabins = {
+        str(lift): names[each]
+        for each in on_lanes
+        if (lift := _property(level.vertices[each], "lift_cabin"))
+    }
+    return _Read(floor, names, cabins)
+
+
+def _require_vertices(name: str, level: _Level) -> None:
+    for what, edges in (("lane", level.lanes), ("wall", level.walls), ("door", level.doors)):
+        for number, each in enumerate(edges):
+            if not all(0 <= end < len(level.vertices) for end in each[:2]):
+                raise WrongInputError(
+                    f"{what} {number} of level '{name}' joins {each[0]} and {each[1]}, but there "
+                    f"are {len(level.vertices)} vertices, from 0 on"
+                )
+
+
+def _names(name: str, level: _Level, on_lanes: Sequence[int], notes: list[str]) -> dict[int, str]:
+    """What the vertices on lanes are called: as they are there, or by their numbers."""
+    names: dict[int, str] = {}
+    taken: set[str] = set()
+    for each in on_lanes:
+        vertex = level.vertices[each]
+        cabin = str(_property(vertex, "lift_cabin", ""))
+        own = _plain(_name_of(vertex)) or _plain(cabin) or f"v{each}"
+        called, number = own, 1
+        while called in taken:
+            number += 1
+            called = f"{own}_{number}"
+        if called != own:
+            notes.append(f"level '{name}' has two places '{own}': one is called '{called}' here")
+        names[each] = called
+        taken.add(called)
+    lost = [
+        own
+        for number, each in enumerate(level.vertices)
+        if (own := _plain(_name_of(each))) and number not in names
+    ]
+    if lost:
+        shown = ", ".join(lost[:5]) + (", ..." if len(lost) > 5 else "")
+        notes.append(f"level '{name}': no lane leads to {len(lost)} named vertices ({shown})")
+    return names
+
+
+def _lanes(lanes: Sequence[Edge], names: Mapping[int, str]) -> Iterator[Lane]:
+    for each in lanes:
+        speed = _property(each, "speed_limit", 0.0)
+        yield Lane(
+            between=(names[each[0]], names[each[1]]),
+            one_way=not _property(each, "bidirectional", False),
+            speed_m_s=float(speed) if isinstance(speed, int | float) and speed > 0.0 else None,
+        )
+
+
+def _doors(name: str, level: _Level, points: Matrix, notes: list[str]) -> dict[str, Door]:
+    doors: dict[str, Door] = {}
+    for number, each in enumerate(level.doors):
+        own = _plain(str(_property(each, "name", ""))) or f"door{number}"
+        called = own if own not in doors else f"{own}_{number}"
+        if called != own:
+            notes.append(f"level '{name}' has two doors '{own}': one is called '{called}' here")
+        x0, y0, x1, y1 = _segment(points, each)
+        # What the traffic editor gives no motor is a doorway that people use.
+        itself = _property(each, "plugin", "normal") == "normal"
+        opens = DoorOpening.ITSELF if itself else DoorOpening.PEOPLE
+        doors[called] = Door(posts=((x0, y0), (x1, y1)), opens=opens)
+    return doors
+
+
+def _elevators(plan: _Plan, read: Mapping[str, _Read], notes: list[str]) -> dict[str, Elevator]:
+    elevators = {}
+    for lift, each in plan.lifts.items():
+        served = [level for level, doors in each.level_doors.items() if doors] or list(read)
+        stops = {
+            name: level.cabins[lift]
+            for name, level in read.items()
+            if name in served and lift in level.cabins
+        }
+        if len(stops) < 2:
+            notes.append(
+                f"the lift '{lift}' has lanes on {len(stops)} of its levels: it is left out"
+            )
+        else:
+            elevators[_plain(lift)] = Elevator(stops=stops)
+    return elevators
+
+
+def _kind(vertex: Vertex) -> PlaceKind:
+    if _property(vertex, "lift_cabin"):
+        return PlaceKind.ELEVATOR
+    if _property(vertex, "is_charger"):
+        return PlaceKind.CHARGER
+    if _property(vertex, "is_parking_spot"):
+        return PlaceKind.PARKING
+    return PlaceKind.ROOM if _plain(_name_of(vertex)) else PlaceKind.WAYPOINT
+
+
+def _name_of(vertex: Vertex) -> str:
+    return str(vertex[3]) if len(vertex) > 3 else ""
+
+
+def _plain(name: str) -> str:
+    """A name without what stands between a floor and a place."""
+    return " ".join(name.replace("/", "-").split())[:64]
+
+
+def _segment(points: Matrix, edge: Edge) -> tuple[float, float, float, float]:
+    (x0, y0), (x1, y1) = points[edge[0]], points[edge[1]]
+    return float(x0), float(y0), float(x1), float(y1)
+
+
+def _property(of: Vertex | Edge, name: str, otherwise: Any = None) -> Any:
+    """The value of a property, which comes as a number for its type and the value."""
+    last = of[-1]
+    return last[name][1] if isinstance(last, dict) and name in last else otherwise

@@ -1,0 +1,184 @@
+"""`mend building`: import, make up, check and draw buildings."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mend.server.cli.failures import CommandLineError, told_plainly
+
+if TYPE_CHECKING:
+    from mend.maps.building.building import BuildingDocument
+    from mend.maps.building.tidying import Imported
+
+app = typer.Typer(
+    name="building",
+    help="Import, make up, check and draw buildings.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+)
+
+OutputFile = Annotated[
+    Path, typer.Option("--output", "-o", metavar="FILE", help="Where to write it, .yaml.")
+]
+BuildingFile = Annotated[Path, typer.Argument(metavar="FILE", help="A building file.")]
+
+
+@app.command("import", short_help="Import a plan of Open-RMF, or CoBot navigation graphs.")
+def import_(
+    plans: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="PLAN...",
+            help="A building.yaml of Open-RMF; or navigation graphs (.json), the lowest floor "
+            "first, each with NAME.vectormap.json beside it for the walls.",
+        ),
+    ],
+    output: OutputFile,
+    graph: Annotated[
+        list[int] | None, typer.Option(help="Of an Open-RMF plan only these lanes' graphs.")
+    ] = None,
+    elevator: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=FLOOR:NODE,...", help="Where an elevator between CoBot floors stops."
+        ),
+    ] = None,
+) -> None:
+    """Write a building file from a plan, and say what of it could not be used.
+
+    Lanes that lead through walls and places that are cut off from the rest are left out.
+    """
+    with told_plainly():
+        cobot = all(each.suffix == ".json" for each in plans)
+        if not cobot and (len(plans) > 1 or elevator):
+            raise CommandLineError("an Open-RMF plan is one file, which names its lifts itself")
+        imported = _from_cobot(plans, elevator or []) if cobot else _from_rmf(plans[0], graph or [])
+        _write(imported.document, output)
+    for note in imported.notes:
+        typer.echo(note, err=True)
+    typer.echo(f"{output}: {_summary(imported.document)}")
+
+
+@app.command("generate", short_help="Make an office building up.")
+def generate(
+    output: OutputFile,
+    seed: Annotated[int, typer.Option(min=0, help="Another building for each; always the same.")],
+    floors: Annotated[int, typer.Option(min=1, max=30)] = 4,
+    rooms: Annotated[int, typer.Option(min=1, max=80, help="On each floor.")] = 20,
+) -> None:
+    """Make an office building up: corridors with rooms, doors, chargers and elevators."""
+    from mend.maps.building.random_building import random_building
+
+    with told_plainly():
+        document = random_building(seed, floors, rooms)
+        _write(document, output)
+    typer.echo(f"{output}: {_summary(document)}")
+
+
+@app.command("check", short_help="Find the mistakes of a building file.")
+def check(files: Annotated[list[Path], typer.Argument(metavar="FILE...")]) -> None:
+    """Say for each file what is wrong with it, or how large the building is."""
+    from mend.maps.building.building_file import read_building_file
+
+    for each in files:
+        with told_plainly():
+            building = read_building_file(each)
+        typer.echo(f"{each}: {_summary(building.document)}")
+
+
+@app.command("draw", short_help="Draw every floor.")
+def draw(
+    file: BuildingFile,
+    folder: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FOLDER", help="Where to write the pictures.")
+    ],
+) -> None:
+    """Draw every floor as an SVG of its own, named after the floor."""
+    from mend.maps.building.building_file import read_building_file
+    from mend.maps.building.drawing import floor_picture
+
+    with told_plainly():
+        building = read_building_file(file)
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in building.floors:
+            path = folder / f"{name}.svg"
+            path.write_text(floor_picture(building, name), encoding="utf-8")
+            typer.echo(path)
+
+
+def _from_rmf(plan: Path, graphs: list[int]) -> "Imported":
+    from pydantic import ValidationError
+
+    from mend.maps.building.open_rmf import import_open_rmf
+
+    try:
+        return import_open_rmf(_read(plan), graphs)
+    except ValidationError as error:
+        raise CommandLineError(_no_plan(plan, "Open-RMF building.yaml", error)) from error
+
+
+def _from_cobot(plans: list[Path], elevators: list[str]) -> "Imported":
+    from pydantic import ValidationError
+
+    from mend.maps.building.cobot import CobotFloor, import_cobot
+    from mend.maps.vector_map_file import read_vector_map
+
+    floors = {}
+    for each in plans:
+        name = each.name.split(".")[0]
+        walls = each.with_name(f"{name}.vectormap.json")
+        floors[name] = CobotFloor(_read(each), read_vector_map(walls) if walls.exists() else None)
+    cabins = dict(_cabin(each) for each in elevators)
+    try:
+        return import_cobot(plans[0].name.split(".")[0], floors, cabins)
+    except ValidationError as error:
+        raise CommandLineError(_no_plan(plans[0], "navigation graph", error)) from error
+
+
+def _cabin(text: str) -> tuple[str, dict[str, int]]:
+    name, _, stops = text.partition("=")
+    try:
+        told = [each.rsplit(":", 1) for each in stops.split(",")]
+        return name, {floor: int(node) for floor, node in told}
+    except ValueError:
+        raise CommandLineError(
+            f"'{text}' is no elevator: say NAME=FLOOR:NODE,FLOOR:NODE, as lift=F1:8,F2:6"
+        ) from None
+
+
+def _read(path: Path) -> Any:
+    from mend.tasks.document import DocumentError, read_document, read_text
+
+    try:
+        return read_document(read_text(path))[0]
+    except DocumentError as error:
+        raise CommandLineError(error.problem.describe(str(path))) from error
+
+
+def _no_plan(path: Path, expected: str, error: Any) -> str:
+    first = error.errors(include_url=False)[0]
+    where = ".".join(str(each) for each in first["loc"])
+    return f"{path} is no {expected}: '{where}': {first['msg'].lower()}"
+
+
+def _write(document: "BuildingDocument", path: Path) -> None:
+    """Raises `CommandLineError` where robots could not drive through it."""
+    from mend.maps.building.building_file import building_text, check_building
+
+    if mistakes := check_building(document):
+        raise CommandLineError("\n".join(message for _, message in mistakes))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(building_text(document), encoding="utf-8")
+
+
+def _summary(document: "BuildingDocument") -> str:
+    floors = document.floors.values()
+    counts = [
+        (len(document.floors), "floor"),
+        (sum(len(each.places) for each in floors), "place"),
+        (sum(len(each.lanes) for each in floors), "lane"),
+        (sum(len(each.doors) for each in floors), "door"),
+        (len(document.elevators), "elevator"),
+    ]
+    return ", ".join(f"{n} {what}{'' if n == 1 else 's'}" for n, what in counts)

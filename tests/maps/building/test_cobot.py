@@ -1,0 +1,65 @@
+"""Navigation graphs of the CoBots become buildings, an elevator where somebody says so."""
+
+import numpy as np
+import pytest
+
+from mend.errors import WrongInputError
+from mend.maps.building.building import Building, DoorOpening
+from mend.maps.building.building_file import check_building
+from mend.maps.building.cobot import CobotFloor, import_cobot
+from mend.maps.vector_map import VectorMap
+
+
+def graph(*edges: dict, nodes: int = 3) -> dict:
+    return {
+        "nodes": [{"id": each, "loc": {"x": 4.0 * each, "y": 0.0}} for each in range(nodes)],
+        "edges": list(edges),
+    }
+
+
+def edge(a: int, b: int, **changes: object) -> dict:
+    return {"s0_id": a, "s1_id": b, "max_speed": 1.0, **changes}
+
+
+HALL = graph(edge(0, 1), edge(1, 2, has_door=True, has_automated_door=True))
+SHUT = VectorMap(np.array([[6.0, -3.0, 6.0, 3.0]]))
+
+
+def test_a_door_is_in_the_middle_of_its_edge_and_opens_the_wall_there() -> None:
+    floor = CobotFloor(HALL, SHUT)
+    read = import_cobot("lab", {"F1": floor})
+    assert check_building(read.document) == []
+    (door,) = read.document.floors["F1"].doors.values()
+    assert sorted(door.posts) == [(6.0, -0.5), (6.0, 0.5)]
+    assert door.opens is DoorOpening.ITSELF
+    assert sorted(read.document.floors["F1"].walls) == [
+        (6.0, -3.0, 6.0, -0.5),
+        (6.0, 0.5, 6.0, 3.0),
+    ]
+
+
+def test_an_elevator_joins_the_nodes_that_are_said_to_be_one() -> None:
+    floors = {"F1": CobotFloor(HALL), "F2": CobotFloor(HALL)}
+    read = import_cobot("lab", floors, {"lift": {"F1": 2, "F2": 0}})
+    assert read.notes == []
+    graph_of = Building(read.document).graph
+    assert np.isfinite(graph_of.shortest(1.0)[0]).all()
+
+
+def test_floors_that_nothing_joins_are_left_out() -> None:
+    small = graph(edge(0, 1), nodes=2)
+    read = import_cobot("lab", {"F1": CobotFloor(HALL), "F2": CobotFloor(small)})
+    assert list(read.document.floors) == ["F1"]
+    assert "floor 'F2': 2 places (n0, n1) are cut off" in read.notes[0]
+
+
+def test_robots_take_no_stairs() -> None:
+    stairs = graph(edge(0, 1), edge(1, 2, has_stairs=True))
+    assert "n2" not in import_cobot("lab", {"F1": CobotFloor(stairs)}).document.floors["F1"].places
+
+
+def test_what_is_not_there_is_told() -> None:
+    with pytest.raises(WrongInputError, match="stops at node 9 of 'F1': there is none"):
+        import_cobot("lab", {"F1": CobotFloor(HALL)}, {"lift": {"F1": 9}})
+    with pytest.raises(WrongInputError, match="leads to node 7"):
+        import_cobot("lab", {"F1": CobotFloor(graph(edge(0, 7)))})

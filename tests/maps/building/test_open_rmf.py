@@ -1,0 +1,130 @@
+"""Plans of Open-RMF become buildings in metres, their floors above each other."""
+
+import math
+
+import pytest
+from pydantic import ValidationError
+
+from mend.errors import WrongInputError
+from mend.maps.building.building import Building, DoorOpening, PlaceKind
+from mend.maps.building.building_file import check_building
+from mend.maps.building.open_rmf import import_open_rmf
+from mend.maps.building.tidying import Imported
+
+
+def lane(a: int, b: int, **properties: object) -> list:
+    kinds = {bool: 4, int: 2, float: 3, str: 1}
+    given = {"bidirectional": True, "graph_idx": 0, **properties}
+    return [a, b, {name: [kinds[type(value)], value] for name, value in given.items()}]
+
+
+def level(**changes: object) -> dict:
+    """A room (0) and a lift (1), 100 px apart; a pixel is 0.05 m; a door in a wall between."""
+    return {
+        "elevation": 0,
+        "vertices": [
+            [100.0, 200.0, 0, 4102],
+            [200.0, 200.0, 0, "", {"lift_cabin": [1, "Lift1"]}],
+            [150.0, 100.0, 0, ""], [150.0, 190.0, 0, ""],
+            [150.0, 210.0, 0, ""], [150.0, 300.0, 0, ""],
+        ],
+        "lanes": [lane(0, 1)],
+        "walls": [[2, 3, {}], [4, 5, {}]],
+        "doors": [[3, 4, {"name": [1, "front"], "plugin": [1, "none"]}]],
+        "measurements": [[0, 1, {"distance": [3, 5.0]}]],
+        "fiducials": [[100.0, 200.0, "a"], [200.0, 200.0, "b"]],
+        **changes,
+    }  # fmt: skip
+
+
+def turned(**changes: object) -> dict:
+    """The same level drawn twice as large, and by a quarter turn."""
+    one = level()
+    points = [[500.0 - 2 * y, 2 * x, *rest] for x, y, *rest in one["vertices"]]
+    fiducials = [[500.0 - 2 * y, 2 * x, name] for x, y, name in one["fiducials"]]
+    return {**one, "vertices": points, "fiducials": fiducials, "elevation": 4, **changes}
+
+
+def plan(**levels: dict) -> dict:
+    doors = {name: ["lift_door"] for name in levels}
+    return {"name": "hotel", "levels": levels, "lifts": {"Lift1": {"level_doors": doors}}}
+
+
+def imported(content: dict, graphs: tuple[int, ...] = ()) -> tuple[Building, list[str]]:
+    read: Imported = import_open_rmf(content, graphs)
+    assert check_building(read.document) == []
+    return Building(read.document), read.notes
+
+
+def test_pixels_become_metres_with_y_upwards() -> None:
+    hotel, notes = imported(plan(L1=level(), L2=level(elevation=4)))
+    room = hotel.floors["L1"].places["4102"]
+    assert (room.x, room.y, room.kind) == (5.0, -10.0, PlaceKind.ROOM)
+    assert notes == []
+
+
+def test_floors_lie_above_each_other_by_their_fiducials() -> None:
+    hotel, _ = imported(plan(L1=level(), L2=turned()))
+    for name in ("4102", "Lift1"):
+        below, above = (hotel.floors[each].places[name] for each in ("L1", "L2"))
+        assert math.dist((below.x, below.y), (above.x, above.y)) < 0.002
+    assert list(hotel.floors) == ["L1", "L2"]
+
+
+def test_a_lift_joins_floors_and_a_door_is_on_the_lane_through_it() -> None:
+    hotel, _ = imported(plan(L1=level(), L2=turned()))
+    assert hotel.document.elevators["Lift1"].stops == {"L1": "Lift1", "L2": "Lift1"}
+    assert [each.doors for each in hotel.crossings] == [["front"], ["front"]]
+    assert hotel.floors["L1"].doors["front"].opens is DoorOpening.PEOPLE
+
+
+def test_lanes_of_other_graphs_are_left_out_where_some_are_chosen() -> None:
+    both = level(lanes=[lane(0, 1), lane(0, 1, graph_idx=1, speed_limit=0.4)])
+    hotel, _ = imported(plan(L1=both, L2=level(elevation=4)), (1,))
+    assert [each.speed_m_s for each in hotel.floors["L1"].lanes] == [0.4]
+    assert hotel.floors.keys() == {"L1"}
+
+
+def test_what_cannot_be_used_is_told_and_left_out() -> None:
+    vertices = [*level()["vertices"], [300.0, 200.0, 0, "attic"], [300.0, 250.0, 0, "4102"]]
+    blind = level(
+        vertices=vertices, lanes=[lane(0, 1), lane(0, 7)], walls=[*level()["walls"], [6, 5, {}]]
+    )
+    hotel, notes = imported(plan(L1=blind, L2=level(elevation=4)))
+    told = "\n".join(notes)
+    assert "has two places '4102'" in told
+    assert "1 named vertices (attic)" in told
+    assert "1 lane (4102 to 4102_2) is through walls" in told
+    assert "1 place (4102_2) is cut off" in told
+    assert "4102_2" not in hotel.floors["L1"].places
+
+
+def test_degrees_become_metres_around_the_middle() -> None:
+    vertices = [[103.78, 1.30, 0, "a"], [103.78, 1.301, 0, "b"]]
+    campus = {
+        "coordinate_system": "wgs84",
+        "levels": {"L1": {"vertices": vertices, "lanes": [lane(0, 1, bidirectional=True)]}},
+    }
+    ground, _ = imported(campus)
+    places = ground.floors["L1"].places
+    assert math.dist(
+        (places["a"].x, places["a"].y), (places["b"].x, places["b"].y)
+    ) == pytest.approx(111.3, abs=0.1)
+
+
+def test_a_level_that_nothing_measures_is_refused() -> None:
+    with pytest.raises(WrongInputError, match="nothing on level 'L1' is measured"):
+        import_open_rmf(plan(L1=level(measurements=[])))
+
+
+def test_a_lane_to_a_vertex_that_is_not_there_is_refused() -> None:
+    with pytest.raises(WrongInputError, match="lane 0 of level 'L1' joins 0 and 99"):
+        import_open_rmf(plan(L1=level(lanes=[lane(0, 99)])))
+
+
+@pytest.mark.parametrize(
+    "content", [None, [], {"levels": 3}, {"levels": {"L1": {"vertices": [[1]]}}}]
+)
+def test_what_is_no_plan_is_refused(content: object) -> None:
+    with pytest.raises((ValidationError, WrongInputError)):
+        import_open_rmf(content)
