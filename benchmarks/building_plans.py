@@ -2,7 +2,7 @@
 
     python benchmarks/building_plans.py FOLDER [--items 20] [--robots 3] [--seed 0] [--seconds 10]
 
-Every `*.building.yaml` (Open-RMF) and every `*.navigation.json` (CoBot) below FOLDER. Deliveries are
+Every `*.building.yaml` (Open-RMF) and `*.navigation.json` (CoBot) below FOLDER. Deliveries are
 drawn between places that are no waypoints (all where there are too few); each plan is judged
 by the checker of schedules. Beside it what the nearest robot would do, one item after the other.
 The exit code is 1 where a plan is not imported, a place not reached or an item not planned.
@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mend.documents.document import read_document, read_text
 from mend.fleet.scheduling.building_travel import travel_in
 from mend.fleet.scheduling.checker import check
 from mend.fleet.scheduling.methods import solve
@@ -27,7 +28,6 @@ from mend.maps.building.cobot import CobotFloor, import_cobot
 from mend.maps.building.open_rmf import import_open_rmf
 from mend.maps.building.tidying import Imported
 from mend.maps.vector_map_file import read_vector_map
-from mend.tasks.document import read_document, read_text
 
 
 def imported(path: Path) -> Imported:

@@ -18,8 +18,8 @@ from mend.dialogue.script import (
     LeaveState,
     State,
 )
+from mend.documents.strict_model import StrictModel
 from mend.tasks.resolution import Resolution
-from mend.tasks.scene import StrictModel
 
 OPENING = "will_you_place"
 OPENING_EFFECT = "I ask whether you will place the {object} yourself ({attempt})."

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from mend.documents.problem import InvalidFileError, Problem
 from mend.server.behaviors import behavior_parameters, behavior_step_counts
 from mend.server.documents import (
     SPOKEN,
@@ -17,7 +18,6 @@ from mend.server.documents import (
 from mend.server.scene_checks import WorldChecks
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
 from mend.tasks.library import NotInLibraryError
-from mend.tasks.problem import InvalidFileError, Problem
 from mend.tasks.scenario import Scenario
 from mend.tasks.scenario_file import (
     Misfit,

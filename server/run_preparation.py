@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from mend.documents.problem import InvalidFileError
 from mend.errors import NotFoundError, WrongInputError
 from mend.robots.arm.feasibility.transfers import plan_transfers
 from mend.server.behaviors import behavior_step_counts
@@ -15,7 +16,6 @@ from mend.server.scene_checks import WorldChecks
 from mend.sim.world import KnownReach
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
 from mend.tasks.library import NotInLibraryError
-from mend.tasks.problem import InvalidFileError
 from mend.tasks.scenario import Scenario
 from mend.tasks.scenario_file import find_misfits, moved_scene
 from mend.tasks.scene import Scene

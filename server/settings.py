@@ -15,6 +15,7 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
+from mend.documents.plain_mistakes import what_it_must_be
 from mend.errors import WrongInputError
 from mend.server.dialogues.mail import MailSettings
 from mend.server.journal.sqlite import IN_MEMORY
@@ -23,7 +24,6 @@ from mend.server.proxies import ProxyNetwork
 from mend.server.public_url import PublicUrl
 from mend.server.retention import KeepSettings
 from mend.server.speech.voice import VoiceChoice
-from mend.tasks.plain_mistakes import what_it_must_be
 
 Seconds = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
 HostName = Annotated[str, Field(min_length=1, max_length=253)]

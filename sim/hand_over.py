@@ -1,6 +1,7 @@
 """A part that somebody holds out, as a world's snapshot keeps it."""
 
-from mend.tasks.scene import Name, StrictModel
+from mend.documents.strict_model import StrictModel
+from mend.tasks.scene import Name
 
 
 class HandOverSnapshot(StrictModel):

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.link.messages import Intervene
 from mend.robots.task_progress import TaskProgress
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.scenario import ScriptedIntervention, Trigger
-from mend.tasks.scene import StrictModel
 
 SCENARIO = "scenario"
 """In whose name scripted interventions happen."""

@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
+from mend.documents.problem import list_names
 from mend.robots.arm.behaviors.behavior import ArmBehavior
 from mend.robots.execution.behavior import of_kind
 from mend.tasks.definition import BehaviorNode, GoalNode
 from mend.tasks.plugins import load_plugins
-from mend.tasks.problem import list_names
 from mend.tasks.scene import Scene
 from mend.tasks.scene_problem import SceneProblem
 

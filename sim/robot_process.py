@@ -19,6 +19,7 @@ from uuid import uuid4
 
 from pydantic import ValidationError
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.agent import AgentGroup
 from mend.robots.link.channel import LinkRefusedError
 from mend.robots.link.client import LinkedAgent, run_agents
@@ -28,7 +29,6 @@ from mend.robots.link.pinned_tls import pinned_tls
 from mend.robots.link.websocket import websocket_channel
 from mend.sim.world import WorldAdapter, WorldSetup, WorldUnavailableError
 from mend.tasks.plugins import PluginError, load_plugins
-from mend.tasks.scene import StrictModel
 
 CANNOT_RUN = 2
 PR_SET_PDEATHSIG = 1

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.link.messages import Intervene, Intervened, ShownObject, ShownPose
 from mend.robots.robot import Robot
 from mend.robots.task_progress import TaskProgress
@@ -11,7 +12,6 @@ from mend.sim.interventions import HELPER, PendingInterventions, PendingSnapshot
 from mend.sim.world import ShownWorld, World
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.scenario import ScriptedIntervention
-from mend.tasks.scene import StrictModel
 
 _PUT_DOWN = (Act.PUT_BACK, Act.PLACE)
 _LAST_STEP = 2**31

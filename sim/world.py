@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from pydantic import BaseModel
 
+from mend.documents.strict_model import StrictModel
 from mend.errors import UnavailableError
 from mend.robots.agent import AgentGroup
 from mend.robots.arm.body import Reach
@@ -13,7 +14,7 @@ from mend.robots.link.messages import ShownObject, ShownPose
 from mend.tasks.definition import BehaviorNode, GoalNode
 from mend.tasks.intervention import Intervention
 from mend.tasks.scenario import ScriptedIntervention
-from mend.tasks.scene import Scene, StrictModel
+from mend.tasks.scene import Scene
 from mend.tasks.scene_problem import SceneProblem
 
 if TYPE_CHECKING:

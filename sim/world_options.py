@@ -5,9 +5,9 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from mend.documents.problem import list_names
+from mend.documents.validation import describe_mistake
 from mend.errors import WrongInputError
-from mend.tasks.problem import list_names
-from mend.tasks.validation import describe_mistake
 
 Options = TypeVar("Options", bound=BaseModel)
 

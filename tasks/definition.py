@@ -10,7 +10,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, JsonValue, model_validator
 
-from mend.tasks.scene import Name, StrictModel
+from mend.documents.strict_model import StrictModel
+from mend.tasks.scene import Name
 
 
 class NodeKind(StrEnum):

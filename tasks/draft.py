@@ -4,9 +4,9 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from mend.tasks.document import LinedMapping
-from mend.tasks.problem import Problem
-from mend.tasks.validation import show_kind
+from mend.documents.document import LinedMapping
+from mend.documents.problem import Problem
+from mend.documents.validation import show_kind
 
 MAX_NODES = 200_000
 MAX_NODE_DEPTH = 250

@@ -7,10 +7,10 @@ Mend is shared by all agents, so the first robot's tree is read and the others a
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from mend.tasks.document import LinedMapping, LinedSequence
+from mend.documents.document import LinedMapping, LinedSequence
+from mend.documents.problem import Problem
+from mend.documents.validation import find_extra_keys, show_kind
 from mend.tasks.draft import MAX_NODES, Draft, DraftNode, find_name_mistake
-from mend.tasks.problem import Problem
-from mend.tasks.validation import find_extra_keys, show_kind
 
 FLAT_KEYS = ("NodeList", "Nodes")
 LEAF_BEHAVIOR = "pick_and_place"

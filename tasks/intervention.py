@@ -5,7 +5,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from mend.tasks.scene import Name, Pose, StrictModel
+from mend.documents.strict_model import StrictModel
+from mend.tasks.scene import Name, Pose
 
 
 class Act(StrEnum):

@@ -5,11 +5,11 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from mend.tasks.document import LinedMapping
+from mend.documents.document import LinedMapping
+from mend.documents.problem import Problem, list_names
+from mend.documents.validation import find_extra_keys, validate_part
 from mend.tasks.draft import Draft, DraftNode
-from mend.tasks.problem import Problem, list_names
 from mend.tasks.scene import Scene
-from mend.tasks.validation import find_extra_keys, validate_part
 
 Behaviors = Mapping[str, type[BaseModel]]
 """The models of the parameters of every known behavior, by its name."""

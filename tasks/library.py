@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from importlib.resources import files
 
+from mend.documents.problem import list_names
 from mend.errors import NotFoundError
-from mend.tasks.problem import list_names
 
 MOST_SHOWN = 64
 """Characters of an unknown name in a sentence; no name that there is has more."""

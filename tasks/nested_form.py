@@ -3,10 +3,10 @@
 from difflib import get_close_matches
 from typing import Any
 
-from mend.tasks.document import LinedMapping, LinedSequence
+from mend.documents.document import LinedMapping, LinedSequence
+from mend.documents.problem import Problem
+from mend.documents.validation import show_kind
 from mend.tasks.draft import MAX_NODES, Draft, DraftNode, find_name_mistake
-from mend.tasks.problem import Problem
-from mend.tasks.validation import show_kind
 
 GOAL_KEYS = ("then", "and", "or")
 _KIND_KEYS = (*GOAL_KEYS, "behavior")

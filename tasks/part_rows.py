@@ -7,10 +7,11 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from mend.tasks.document import LinedMapping, LinedSequence
-from mend.tasks.problem import Problem
-from mend.tasks.scene import Metres, Pose, StrictModel
-from mend.tasks.validation import show_kind, validate_part
+from mend.documents.document import LinedMapping, LinedSequence
+from mend.documents.problem import Problem
+from mend.documents.strict_model import StrictModel
+from mend.documents.validation import show_kind, validate_part
+from mend.tasks.scene import Metres, Pose
 
 _MOST = 1000
 

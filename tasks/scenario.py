@@ -4,8 +4,9 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from mend.documents.strict_model import StrictModel
 from mend.tasks.intervention import Intervention
-from mend.tasks.scene import Name, Pose, StrictModel
+from mend.tasks.scene import Name, Pose
 
 Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
 Seconds = Annotated[float, Field(ge=0.0, le=3600.0)]

@@ -6,14 +6,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from mend.documents.document import DocumentError, LinedMapping, read_document, read_text
+from mend.documents.problem import InvalidFileError, Problem
+from mend.documents.validation import find_line, show_kind, validate_part
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
-from mend.tasks.document import DocumentError, LinedMapping, read_document, read_text
 from mend.tasks.intervention import Act
 from mend.tasks.library import SCENARIOS
-from mend.tasks.problem import InvalidFileError, Problem
 from mend.tasks.scenario import Scenario, Trigger
 from mend.tasks.scene import Scene
-from mend.tasks.validation import find_line, show_kind, validate_part
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,10 +7,11 @@ that stands alone: x forward, y left of it.
 import math
 from typing import Annotated
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, Field
 
-from mend.tasks.spellings import NAME
-from mend.tasks.unit import Unit
+from mend.documents.spellings import NAME
+from mend.documents.strict_model import StrictModel
+from mend.documents.unit import Unit
 
 Metres = Annotated[float, Field(ge=-100.0, le=100.0, allow_inf_nan=False), Unit("metres")]
 Length = Annotated[float, Field(gt=1e-6, le=10.0, allow_inf_nan=False), Unit("metres")]
@@ -34,12 +35,6 @@ QuarterTurns = Annotated[Radians, AfterValidator(_quarter_turns)]
 
 RESTS_M = 0.006
 """What is so near to a surface rests on it."""
-
-
-class StrictModel(BaseModel):
-    """A model that takes neither unknown fields nor values of another type."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
 
 class Pose(StrictModel):

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from mend.tasks.document import DocumentError, LinedMapping, read_document, read_text
+from mend.documents.document import DocumentError, LinedMapping, read_document, read_text
+from mend.documents.problem import InvalidFileError, Problem
+from mend.documents.validation import find_line, show_kind, validate_part
 from mend.tasks.library import SCENES
 from mend.tasks.part_rows import expand_rows
-from mend.tasks.problem import InvalidFileError, Problem
 from mend.tasks.scene import Scene
-from mend.tasks.validation import find_line, show_kind, validate_part
 
 
 @dataclass(frozen=True, slots=True)

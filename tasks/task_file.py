@@ -5,18 +5,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from mend.documents.document import DocumentError, LinedMapping, read_document, read_text
+from mend.documents.problem import InvalidFileError, Problem
+from mend.documents.validation import find_extra_keys, show_kind
 from mend.tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
-from mend.tasks.document import DocumentError, LinedMapping, read_document, read_text
 from mend.tasks.draft import Draft, find_depth_mistake, find_name_mistake, name_nodes
 from mend.tasks.flat_form import FLAT_KEYS, draft_flat_tree
 from mend.tasks.leaf_check import Behaviors, check_leaf
 from mend.tasks.library import TREES, NotInLibraryError
 from mend.tasks.nested_form import draft_nested_tree
-from mend.tasks.problem import InvalidFileError, Problem
 from mend.tasks.scene import Scene
 from mend.tasks.scene_file import built_in_scene, check_scene_file
 from mend.tasks.tree_problems import find_tree_problems
-from mend.tasks.validation import find_extra_keys, show_kind
 
 FindScene = Callable[[str], Scene]
 """Finds a scene by name; raises `NotInLibraryError` or `InvalidFileError`."""

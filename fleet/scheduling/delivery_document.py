@@ -4,8 +4,9 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
+from mend.documents.strict_model import StrictModel
 from mend.maps.navigation import WayKind
-from mend.tasks.scene import Name, StrictModel
+from mend.tasks.scene import Name
 
 Seconds = Annotated[float, Field(ge=0.0, le=1e9, allow_inf_nan=False)]
 Length = Annotated[float, Field(ge=0.0, le=1e7, allow_inf_nan=False)]

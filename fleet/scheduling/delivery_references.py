@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from mend.documents.problem import list_names
 from mend.fleet.scheduling.delivery_document import (
     DeliveryDocument,
     GraphEntry,
@@ -10,7 +11,6 @@ from mend.fleet.scheduling.delivery_document import (
     TravelEntry,
 )
 from mend.maps.navigation import WayKind
-from mend.tasks.problem import list_names
 
 Location = tuple[str | int, ...]
 Mistake = tuple[Location, str]

@@ -8,6 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from mend.documents.document import DocumentError, LinedMapping, read_document, read_text
+from mend.documents.problem import InvalidFileError
+from mend.documents.problem import Problem as Mistake
+from mend.documents.validation import find_line, show_kind, validate_part
 from mend.errors import WrongInputError
 from mend.fleet.scheduling.building_travel import travel_in
 from mend.fleet.scheduling.delivery_building import find_building, in_building
@@ -34,10 +38,6 @@ from mend.fleet.scheduling.problem import (
 )
 from mend.fleet.scheduling.travel import Matrix, Travel, TravelError
 from mend.maps.navigation import NavigationError, NavigationGraph, Place, Way
-from mend.tasks.document import DocumentError, LinedMapping, read_document, read_text
-from mend.tasks.problem import InvalidFileError
-from mend.tasks.problem import Problem as Mistake
-from mend.tasks.validation import find_line, show_kind, validate_part
 
 FLOOR_GAP = 0.25
 """How far floors are apart where they are drawn beside each other, as a share of their depth."""

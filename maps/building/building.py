@@ -12,8 +12,9 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from mend.documents.strict_model import StrictModel
 from mend.errors import NotFoundError
 from mend.maps.building.crossing import crossed_by
 from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
@@ -33,10 +34,6 @@ RIDE_S = 15.0
 FLOOR_S = 5.0
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-
-
 class PlaceKind(StrEnum):
     """What a place is for."""
 
@@ -47,7 +44,7 @@ class PlaceKind(StrEnum):
     ELEVATOR = "elevator"
 
 
-class FloorPlace(_Strict):
+class FloorPlace(StrictModel):
     """A point that robots drive to or through."""
 
     x: Metres
@@ -55,7 +52,7 @@ class FloorPlace(_Strict):
     kind: PlaceKind = PlaceKind.WAYPOINT
 
 
-class Lane(_Strict):
+class Lane(StrictModel):
     """Where robots drive, straight from place to place; `one_way` from the first to the second."""
 
     between: tuple[Name, Name]
@@ -70,7 +67,7 @@ class DoorOpening(StrEnum):
     PEOPLE = "people"
 
 
-class Door(_Strict):
+class Door(StrictModel):
     """A door across lanes, from post to post. `open_s`: when it may be passed; always if empty."""
 
     posts: tuple[tuple[Metres, Metres], tuple[Metres, Metres]]
@@ -78,7 +75,7 @@ class Door(_Strict):
     open_s: tuple[tuple[Seconds, Seconds], ...] = ()
 
 
-class Floor(_Strict):
+class Floor(StrictModel):
     """One floor; `walls` are rows x0, y0, x1, y1, without its doors."""
 
     height: Metres = 0.0
@@ -94,7 +91,7 @@ class Floor(_Strict):
         return VectorMap.of([*self.walls, *shut])
 
 
-class Elevator(_Strict):
+class Elevator(StrictModel):
     """A cabin that stops at a place of each of its floors."""
 
     stops: Annotated[dict[Name, Name], Field(min_length=2)]
@@ -102,7 +99,7 @@ class Elevator(_Strict):
     floor_s: Seconds = FLOOR_S
 
 
-class BuildingDocument(_Strict):
+class BuildingDocument(StrictModel):
     """What a building file says. Floors come from the lowest to the highest."""
 
     building: Name

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from mend.documents.document import DocumentError, LinedMapping, read_document, read_text
+from mend.documents.problem import InvalidFileError, Problem, list_names
+from mend.documents.validation import find_line, show_kind, validate_part
 from mend.maps.building.building import Building, BuildingDocument, Floor
 from mend.maps.building.connection import connected
-from mend.tasks.document import DocumentError, LinedMapping, read_document, read_text
-from mend.tasks.problem import InvalidFileError, Problem, list_names
-from mend.tasks.validation import find_line, show_kind, validate_part
 
 Location = tuple[str | int, ...]
 Mistake = tuple[Location, str]

@@ -6,9 +6,9 @@ from typing import ClassVar, TypeVar
 
 from pydantic import ValidationError
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.execution.command_error import CommandError
 from mend.robots.link.messages import Start
-from mend.tasks.scene import StrictModel
 
 
 class Behavior(ABC):

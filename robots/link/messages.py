@@ -14,9 +14,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
 
+from mend.documents.spellings import SEEN_CHARACTERS_OR_NONE
 from mend.robots.link.shown_name import SHOWN
 from mend.tasks.intervention import Intervention
-from mend.tasks.spellings import SEEN_CHARACTERS_OR_NONE
 
 PROTOCOL_VERSION = 1
 

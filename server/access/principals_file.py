@@ -23,14 +23,14 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails
 
+from mend.documents.plain_mistakes import what_it_must_be
+from mend.documents.spellings import SEEN_CHARACTERS, SHA256, SHORT_ID
+from mend.documents.validation import what_is_right
 from mend.errors import MendError
 from mend.robots.link.shown_name import SHOWN
 from mend.server.access.principal import RESERVED
 from mend.server.access.roles import Role
 from mend.server.journal.file_mode import OWNERS_FOLDER, keep_to_owner
-from mend.tasks.plain_mistakes import what_it_must_be
-from mend.tasks.spellings import SEEN_CHARACTERS, SHA256, SHORT_ID
-from mend.tasks.validation import what_is_right
 
 HEADING = "# Written by `mend access`. Tokens are not in here, only their hashes.\n"
 KEPT_CHANGES = 1000

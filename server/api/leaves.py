@@ -5,11 +5,11 @@ from typing import Annotated
 from fastapi import APIRouter, Body
 from pydantic import BaseModel, ConfigDict, Field
 
+from mend.documents.spellings import NODE
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
 from mend.server.api.services import HelperName, RunId, WithCaller, WithServices, helper_of
 from mend.server.runtime.views import LeafSaid, RunSummary
-from mend.tasks.spellings import NODE
 
 router = APIRouter(prefix="/api/runs/{run}/leaves", tags=["runs"], route_class=RepeatableRoute)
 

@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from mend.tasks.plain_mistakes import what_it_must_be
-from mend.tasks.unit import unit_of_name
-from mend.tasks.validation import what_is_right
+from mend.documents.plain_mistakes import what_it_must_be
+from mend.documents.unit import unit_of_name
+from mend.documents.validation import what_is_right
 
 MOST_TOLD = 100
 """So many values that are wrong are told; whoever mends them hears of the next ones."""

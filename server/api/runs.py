@@ -5,6 +5,7 @@ from uuid import UUID
 
 from fastapi import APIRouter, Body, Path, Query, Response
 
+from mend.documents.spellings import CAMERA
 from mend.server.api.json_answer import json_answer
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
@@ -16,7 +17,6 @@ from mend.server.runtime.views import RunStatus, RunSummary, RunView
 from mend.server.told_events import ToldEvents
 from mend.server.turns import Turns
 from mend.tasks.intervention import Intervention
-from mend.tasks.spellings import CAMERA
 
 router = APIRouter(prefix="/api/runs", tags=["runs"], route_class=RepeatableRoute)
 

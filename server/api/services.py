@@ -11,6 +11,7 @@ from fastapi import Depends, Path, Query
 from pydantic import Field
 from starlette.requests import HTTPConnection
 
+from mend.documents.spellings import NAME, SEEN_CHARACTERS
 from mend.errors import WrongInputError
 from mend.robots.link.shown_name import SHOWN
 from mend.server.access.access import Access
@@ -29,7 +30,6 @@ from mend.server.runtime.views import WorldView
 from mend.server.settings import Settings
 from mend.server.sites.sites import Sites
 from mend.server.speech.abilities import NO_SPEECH, SpeechAbilities
-from mend.tasks.spellings import NAME, SEEN_CHARACTERS
 
 if TYPE_CHECKING:
     # It refuses with problem documents, which know them.

@@ -6,6 +6,7 @@ from uuid import UUID
 from fastapi import APIRouter, Path, Response
 from pydantic import BaseModel, ConfigDict
 
+from mend.documents.spellings import PHRASE
 from mend.errors import NotFoundError
 from mend.server.api.problems import ProblemError, documented
 from mend.server.api.services import DialogueId, Services, WithServices
@@ -14,7 +15,6 @@ from mend.server.speech.ear import NoEars
 from mend.server.speech.phrases import FIXED, effect_text, help_text
 from mend.server.speech.question import find_prompt
 from mend.server.speech.voice import NoVoice, VoiceError
-from mend.tasks.spellings import PHRASE
 
 router = APIRouter(tags=["speech"])
 

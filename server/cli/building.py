@@ -148,7 +148,7 @@ def _cabin(text: str) -> tuple[str, dict[str, int]]:
 
 
 def _read(path: Path) -> Any:
-    from mend.tasks.document import DocumentError, read_document, read_text
+    from mend.documents.document import DocumentError, read_document, read_text
 
     try:
         return read_document(read_text(path))[0]

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from mend.documents.problem import InvalidFileError, Problem
 from mend.server.behaviors import behavior_step_counts
 from mend.server.cli.task_files import (
     SceneSource,
@@ -13,7 +14,6 @@ from mend.server.cli.task_files import (
 )
 from mend.server.scene_checks import WorldChecks
 from mend.tasks.library import NotInLibraryError
-from mend.tasks.problem import InvalidFileError, Problem
 from mend.tasks.scenario_file import Misfit, find_misfits, read_scenario_file
 from mend.tasks.scene_file import read_scene_file
 from mend.tasks.scene_problem import SceneProblem

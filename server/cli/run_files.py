@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from mend.documents.problem import InvalidFileError
 from mend.server.behaviors import behavior_parameters, behavior_step_counts
 from mend.server.cli.failures import CommandLineError
 from mend.server.cli.task_files import SceneSource, read_task, read_text
 from mend.server.documents import DocumentKind
 from mend.server.fixed_documents import GivenFiles
 from mend.tasks.library import TREES
-from mend.tasks.problem import InvalidFileError
 from mend.tasks.scenario import Scenario
 from mend.tasks.scenario_file import Misfit, built_in_scenario, find_misfits, read_scenario_file
 from mend.tasks.scene import Scene

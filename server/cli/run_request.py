@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, SecretStr, ValidationError
 from pydantic_core import ErrorDetails
 
+from mend.documents.validation import what_is_right
 from mend.server.cli.answers import Answers, read_answers
 from mend.server.cli.failures import CommandLineError
 from mend.server.cli.journals import new_run_journal
@@ -16,7 +17,6 @@ from mend.server.runtime.requests import RunRequest
 from mend.server.settings import Settings, load_settings
 from mend.server.sites.requests import SiteRequest
 from mend.tasks.scenario import Scenario
-from mend.tasks.validation import what_is_right
 
 T = TypeVar("T", bound=BaseModel)
 

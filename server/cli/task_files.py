@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from mend.documents.problem import Problem
 from mend.server.behaviors import behavior_parameters
 from mend.server.cli.failures import CommandLineError
 from mend.tasks.library import SCENES, NotInLibraryError
-from mend.tasks.problem import Problem
 from mend.tasks.scene import Scene
 from mend.tasks.scene_file import ReadScene, check_scene_file, read_scene_file, read_scene_text
 from mend.tasks.scene_problem import SceneProblem

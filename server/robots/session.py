@@ -8,6 +8,7 @@ from typing import Protocol
 
 from pydantic import ValidationError
 
+from mend.documents.plain_mistakes import what_it_must_be
 from mend.errors import MendError, RefusalError
 from mend.robots.link.channel import Channel, ChannelClosedError
 from mend.robots.link.messages import (
@@ -26,7 +27,6 @@ from mend.server.journal.journal import JournalClosedError
 from mend.server.limits import LimitName
 from mend.server.robots.silence import Silence
 from mend.server.robots.times import LinkTimes
-from mend.tasks.plain_mistakes import what_it_must_be
 
 log = logging.getLogger(__name__)
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import ConfigDict, Field
 
-from mend.tasks.scene import StrictModel
+from mend.documents.strict_model import StrictModel
 
 REACH_MIN_M = 0.40
 """Nearer to its base no robot can grasp."""

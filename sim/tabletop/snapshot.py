@@ -2,9 +2,10 @@
 
 from typing import Literal
 
+from mend.documents.strict_model import StrictModel
 from mend.sim.hand_over import HandOverSnapshot
 from mend.sim.tabletop.part import UprightPose
-from mend.tasks.scene import Metres, Name, StrictModel
+from mend.tasks.scene import Metres, Name
 
 _DECIMALS = 6
 """A micrometre is enough, and a snapshot is written at every step."""

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from mend.tasks.scene import StrictModel
+from mend.documents.strict_model import StrictModel
 
 
 class WorkcellOptions(StrictModel):

@@ -2,9 +2,10 @@
 
 from typing import Literal
 
+from mend.documents.strict_model import StrictModel
 from mend.sim.hand_over import HandOverSnapshot
 from mend.sim.workcell.parts import PartPose
-from mend.tasks.scene import Name, StrictModel
+from mend.tasks.scene import Name
 
 Triple = tuple[float, float, float]
 

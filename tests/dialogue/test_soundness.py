@@ -16,9 +16,9 @@ from mend.dialogue.script import (
     State,
 )
 from mend.dialogue.soundness import UnsoundScriptError, check_script
+from mend.documents.strict_model import StrictModel
 from mend.tasks.plugins import PluginError
 from mend.tasks.resolution import Resolution
-from mend.tasks.scene import StrictModel
 
 LATER = CloseState("I will try again later.", Resolution.ROBOT_RETRY)
 

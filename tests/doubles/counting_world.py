@@ -5,9 +5,9 @@ from pathlib import Path
 
 from counting_agent import CountingAgent
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.link.messages import CommandBody, Interrupt
 from mend.sim.world import WorldSetup, WorldUnavailableError
-from mend.tasks.scene import StrictModel
 
 
 class HangingAgent(CountingAgent):

@@ -13,7 +13,17 @@ import pytest
 from mend.server.api.console import BUILT
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("tasks", "maps", "dialogue", "localization", "robots", "fleet", "sim", "server")
+PACKAGES = (
+    "documents",
+    "tasks",
+    "maps",
+    "dialogue",
+    "localization",
+    "robots",
+    "fleet",
+    "sim",
+    "server",
+)
 
 ASSET = re.compile(r'"/(assets/[^"]+)"')
 IMPORT = re.compile(r"""(?:\bfrom|\bimport)\s*\(?\s*["']\./([\w.-]+)["']""")

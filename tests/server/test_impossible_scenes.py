@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
+from mend.documents.problem import InvalidFileError
 from mend.errors import WrongInputError
 from mend.server.behaviors import behavior_parameters
 from mend.server.scene_checks import load_world_checks
 from mend.tasks.library import SCENES
-from mend.tasks.problem import InvalidFileError
 from mend.tasks.scene import Scene
 from mend.tasks.scene_file import built_in_scene, check_scene_text
 from mend.tasks.task_file import check_task_text

@@ -6,7 +6,7 @@ import pytest
 import yaml
 from trees import BEHAVIORS
 
-from mend.tasks.problem import InvalidFileError
+from mend.documents.problem import InvalidFileError
 from mend.tasks.task_file import check_task_text
 from mend.tasks.task_tree import TaskTree
 

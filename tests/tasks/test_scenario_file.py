@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from mend.documents.problem import InvalidFileError
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
 from mend.tasks.intervention import Act
 from mend.tasks.library import SCENARIOS, NotInLibraryError
-from mend.tasks.problem import InvalidFileError
 from mend.tasks.scenario import Scenario, Trigger
 from mend.tasks.scenario_file import (
     built_in_scenario,

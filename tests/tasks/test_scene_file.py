@@ -7,10 +7,10 @@ import jsonschema_rs
 import pytest
 from trees import BEHAVIORS
 
-from mend.tasks.document import read_document
+from mend.documents.document import read_document
+from mend.documents.problem import InvalidFileError
 from mend.tasks.json_schema import scenario_schema, scene_schema, task_schema
 from mend.tasks.library import SCENES, TREES, NotInLibraryError
-from mend.tasks.problem import InvalidFileError
 from mend.tasks.scene_file import (
     built_in_scene,
     check_scene_file,

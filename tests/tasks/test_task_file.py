@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from sampled import sample
 from trees import BEHAVIORS
 
+from mend.documents.problem import InvalidFileError
 from mend.tasks.draft import MAX_NODE_DEPTH
 from mend.tasks.library import SCENES, TREES, NotInLibraryError, Shelf
-from mend.tasks.problem import InvalidFileError
 from mend.tasks.scene_file import built_in_scene
 from mend.tasks.task_file import CheckedTask, check_built_in_task, check_task_file, check_task_text
 from mend.tasks.task_tree import TaskTree

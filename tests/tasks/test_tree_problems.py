@@ -8,8 +8,8 @@ import pytest
 from random_task import random_task
 from trees import BEHAVIORS
 
+from mend.documents.problem import InvalidFileError
 from mend.sim.random_nesting import random_ordered_nesting
-from mend.tasks.problem import InvalidFileError
 from mend.tasks.scene import Place, Pose, Scene, SceneObject
 from mend.tasks.task_file import check_task_text
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from courtyard.floor import HALF_M
 from courtyard.world import Courtyard
+from mend.documents.strict_model import StrictModel
 from mend.robots.base.subsystem import BaseSubsystem
 from mend.robots.catalogue import Catalogue
 from mend.robots.robot import Robot
@@ -12,7 +13,7 @@ from mend.sim.world import WorldSetup
 from mend.tasks.definition import BehaviorNode, GoalNode
 from mend.tasks.frames import frames_of
 from mend.tasks.plugins import load_plugins
-from mend.tasks.scene import Scene, StrictModel
+from mend.tasks.scene import Scene
 from mend.tasks.scene_problem import SceneProblem
 
 

@@ -5,11 +5,11 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.base.monitors import BaseMonitor, BaseView
 from mend.robots.execution.monitor import ANY_BEHAVIOR, Reaction
 from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
-from mend.tasks.scene import StrictModel
 
 
 class Room(StrictModel):

@@ -5,9 +5,10 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.base.behaviors import BaseBehavior, BaseSituation, Drive
 from mend.robots.execution.command_error import CommandError
-from mend.tasks.scene import Name, StrictModel
+from mend.tasks.scene import Name
 
 
 class PatrolParameters(StrictModel):

@@ -4,12 +4,12 @@ from typing import ClassVar
 
 from pydantic import Field
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.grip import GripState
 from mend.robots.arm.monitors import ArmMonitor, ArmView
 from mend.robots.execution.monitor import Reaction
 from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
-from mend.tasks.scene import StrictModel
 
 
 class SlippingParameters(StrictModel):

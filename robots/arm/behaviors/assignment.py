@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.behaviors.behavior import ArmBehavior
 from mend.robots.arm.result import JudgedResult
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location, WasDone
-from mend.tasks.scene import StrictModel
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.body import ToolPose
 from mend.robots.arm.grasp import Grasp
 from mend.robots.arm.gripper import GripperModel
@@ -12,7 +13,6 @@ from mend.robots.catalogue import Part
 from mend.robots.execution.behavior import Behavior
 from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Location
-from mend.tasks.scene import StrictModel
 
 
 @dataclass(frozen=True, slots=True)

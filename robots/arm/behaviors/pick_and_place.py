@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.behaviors.behavior import ArmBehavior, Move, SetGripper, Situation, Step
 from mend.robots.arm.body import ToolPose
 from mend.robots.arm.grasp import RELEASE_CLEARANCE_M, Grasp, half_turn
 from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Location
-from mend.tasks.scene import Name, StrictModel
+from mend.tasks.scene import Name
 
 _LIFTING = (Phase.APPROACH, Phase.GRASP, Phase.LIFT)
 

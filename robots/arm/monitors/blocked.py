@@ -6,13 +6,13 @@ from typing import Annotated, ClassVar, Self
 
 from pydantic import Field, model_validator
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.behaviors.contact import Contact, Try
 from mend.robots.arm.behaviors.pick_and_place import PickAndPlace
 from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
 from mend.robots.execution.monitor import BEFORE_FIRST_STEP, Reaction
 from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
-from mend.tasks.scene import StrictModel
 
 PushLimit = Annotated[float, Field(gt=0.0, le=100.0)]
 SpeedShare = Annotated[float, Field(gt=0.0, le=1.0)]

@@ -2,11 +2,11 @@
 
 from typing import ClassVar
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.grip import GripState
 from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
 from mend.robots.execution.monitor import NoParameters, Reaction
 from mend.robots.link.messages import Detection
-from mend.tasks.scene import StrictModel
 
 
 class GripMonitor(ArmMonitor[NoParameters]):

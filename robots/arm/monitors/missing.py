@@ -2,11 +2,11 @@
 
 from typing import ClassVar
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
 from mend.robots.execution.monitor import ANY_BEHAVIOR, NoParameters, Reaction
 from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
-from mend.tasks.scene import StrictModel
 
 
 class Missing(ArmMonitor[NoParameters]):

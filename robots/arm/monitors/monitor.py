@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, TypeVar
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.behaviors.contact import Contact, Try
 from mend.robots.arm.body import Reach
 from mend.robots.arm.grip import GripReading
@@ -13,7 +14,6 @@ from mend.robots.link.messages import Location, WasDone
 from mend.robots.vision.head import HeadSighting
 from mend.robots.vision.obstruction import Obstruction
 from mend.robots.vision.presence import Presence
-from mend.tasks.scene import StrictModel
 
 P = TypeVar("P", bound=StrictModel)
 

@@ -2,12 +2,12 @@
 
 from typing import ClassVar
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.behaviors.pick_and_place import PickAndPlace
 from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
 from mend.robots.execution.monitor import NoParameters, Reaction
 from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
-from mend.tasks.scene import StrictModel
 
 
 class Positioning(ArmMonitor[NoParameters]):

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 from pydantic import Field
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
 from mend.robots.arm.monitors.unreachable import why_beyond_reach, why_lying
 from mend.robots.execution.monitor import ANY_BEHAVIOR, Reaction
@@ -12,7 +13,6 @@ from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
 from mend.robots.vision.head import HeadSighting
 from mend.robots.vision.presence import AT_PLACE_HEIGHT_M, AT_PLACE_M, Presence, is_at, turned_rad
-from mend.tasks.scene import StrictModel
 
 _MM = 1e3
 

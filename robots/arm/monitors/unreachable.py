@@ -5,12 +5,12 @@ from typing import ClassVar
 
 from pydantic import Field
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.monitors.monitor import ArmMonitor, ArmView
 from mend.robots.execution.monitor import ANY_BEHAVIOR, Reaction
 from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Detection
 from mend.robots.vision.head import HeadSighting
-from mend.tasks.scene import StrictModel
 
 
 class UnreachableParameters(StrictModel):

@@ -4,10 +4,10 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.base.body import BasePose
 from mend.robots.execution.behavior import Behavior
 from mend.robots.execution.phase import Phase
-from mend.tasks.scene import StrictModel
 
 
 @dataclass(frozen=True, slots=True)

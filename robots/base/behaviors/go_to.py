@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 from typing import ClassVar
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.base.behaviors.behavior import BaseBehavior, BaseSituation, Drive
 from mend.robots.execution.command_error import CommandError
-from mend.tasks.scene import Name, StrictModel
+from mend.tasks.scene import Name
 
 
 class GoToParameters(StrictModel):

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import ClassVar, TypeVar
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.base.body import BasePose, RangeScan
 from mend.robots.execution.monitor import Monitor, MonitorView
-from mend.tasks.scene import StrictModel
 
 P = TypeVar("P", bound=StrictModel)
 

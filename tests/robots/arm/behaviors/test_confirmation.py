@@ -6,6 +6,7 @@ import pytest
 from robot_bench import RobotBench
 from scripted_body import STARTS
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.monitors import ArmMonitor, ArmView
 from mend.robots.execution.monitor import NoParameters, Reaction
 from mend.robots.execution.phase import Phase
@@ -18,7 +19,6 @@ from mend.robots.link.messages import (
     StepStarted,
 )
 from mend.robots.vision.presence import Presence
-from mend.tasks.scene import StrictModel
 
 
 class Onlooker(ArmMonitor[NoParameters]):

@@ -6,12 +6,13 @@ from typing import ClassVar
 import pytest
 from robot_bench import RobotBench
 
+from mend.documents.strict_model import StrictModel
 from mend.robots.arm.behaviors import ArmBehavior, Move, SetGripper, Situation, Step
 from mend.robots.arm.behaviors.pick_and_place import PickAndPlace
 from mend.robots.arm.body import ToolPose
 from mend.robots.execution.phase import Phase
 from mend.robots.link.messages import Finished, Interrupt, IssueDetected, Start, StepStarted
-from mend.tasks.scene import Name, StrictModel
+from mend.tasks.scene import Name
 
 
 class PushParameters(StrictModel):

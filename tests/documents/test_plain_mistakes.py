@@ -5,11 +5,11 @@ from typing import Any
 import pytest
 from pydantic import BaseModel, Field, ValidationError
 
+from mend.documents.plain_mistakes import what_it_must_be
+from mend.documents.spellings import SPELLINGS
 from mend.robots.link.messages import robot_message
 from mend.server.access.principals_file import Principals
 from mend.server.app import described_app
-from mend.tasks.plain_mistakes import what_it_must_be
-from mend.tasks.spellings import SPELLINGS
 
 
 class Everything(BaseModel):

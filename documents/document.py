@@ -9,8 +9,8 @@ from typing import Any
 
 import yaml
 
+from mend.documents.problem import Problem
 from mend.errors import WrongInputError
-from mend.tasks.problem import Problem
 
 MAX_BYTES = 32 * 1024 * 1024
 MAX_DEPTH = 4_000

@@ -5,7 +5,7 @@ from typing import Any
 
 from pydantic_core import ErrorDetails
 
-from mend.tasks.spellings import SPELLINGS
+from mend.documents.spellings import SPELLINGS
 
 _ONE_KIND = {
     "model_type": "a mapping",

@@ -2,7 +2,7 @@
 
 import pytest
 
-from mend.tasks.document import MAX_DEPTH, DocumentError, LinedMapping, read_document
+from mend.documents.document import MAX_DEPTH, DocumentError, LinedMapping, read_document
 
 
 def test_values_know_their_lines() -> None:

@@ -2,10 +2,11 @@
 
 import pytest
 
-from mend.tasks.problem import InvalidFileError
-from mend.tasks.scene import Name, Place, Pose, Scene, SceneObject, StrictModel, Table
+from mend.documents.problem import InvalidFileError
+from mend.documents.strict_model import StrictModel
+from mend.documents.unit import unit_at, unit_of_name
+from mend.tasks.scene import Name, Place, Pose, Scene, SceneObject, Table
 from mend.tasks.scene_file import check_scene_text
-from mend.tasks.unit import unit_at, unit_of_name
 
 
 class Shelf(StrictModel):

@@ -7,10 +7,10 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from mend.tasks.document import LinedMapping, LinedSequence
-from mend.tasks.plain_mistakes import what_it_must_be
-from mend.tasks.problem import Problem, list_names
-from mend.tasks.unit import unit_at, unit_of_name
+from mend.documents.document import LinedMapping, LinedSequence
+from mend.documents.plain_mistakes import what_it_must_be
+from mend.documents.problem import Problem, list_names
+from mend.documents.unit import unit_at, unit_of_name
 
 _MAX_VALUE_CHARACTERS = 60
 _OF_NUMBERS = ("greater_", "less_", "float_", "int_", "finite_")

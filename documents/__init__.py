@@ -1,0 +1,1 @@
+"""Files that people write: YAML and JSON read safely, their mistakes told with their lines."""
