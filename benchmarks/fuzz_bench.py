@@ -43,9 +43,10 @@ interventions:
   - {when: {object: pink_bar, step: 4}, do: {act: steal, object: pink_bar}}
 answers: [yes]
 """
-COUNTED = (ev.SignedIn, ev.SignInFailed, ev.RobotHolding, ev.InterventionDone)
+COUNTED = (ev.SignedIn, ev.SignInFailed, ev.StepStarted, ev.RobotHolding, ev.InterventionDone)
 """Sign-ins are told whatever comes of them. A robot says a moment later that it holds after a
-pause, and that what was to be done to its world is."""
+pause, which step it had begun before it heard of that, and that what was to be done to its world
+is."""
 
 
 @dataclass

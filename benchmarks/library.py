@@ -39,6 +39,7 @@ from mend.tasks.scene import Scene
 
 WORLDS = ("tabletop", "workcell")
 NOISY = {"camera_noise": 3.0, "light": 1.0, "depth_noise": 1.0}
+OTHER_SCENE = "given"
 THERE_M = 0.02
 """A part that is farther from its place than this is somewhere else."""
 UPRIGHT_RAD = 0.2
@@ -57,6 +58,7 @@ class Outcome:
     issues: Sequence[str] = ()
     errors_mm: Sequence[float] = ()
     misplaced: Sequence[str] = ()
+    moved: int = 0
     wall_s: float = 0.0
 
     @property
@@ -88,18 +90,31 @@ class Tally:
 
 
 async def run_task(
-    task: str, world: str, seed: int, options: dict[str, float] | None = None
+    task: str,
+    world: str,
+    seed: int,
+    options: dict[str, float] | None = None,
+    scene: Scene | None = None,
 ) -> Outcome:
-    """One run of a shipped task with nobody there to help."""
+    """One run of a shipped task with nobody there to help, in its own scene or in another one."""
     # Only here, so that a worker's limits on threads come before the libraries that heed them.
     from mend.server.composition import open_service
+    from mend.server.documents import DocumentKind
+    from mend.server.fixed_documents import GivenFiles
 
     settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
     request = RunRequest(
-        tree=task, world=world, seed=seed, speed="max", answers="none", world_options=options or {}
+        tree=task,
+        world=world,
+        seed=seed,
+        speed="max",
+        answers="none",
+        world_options=options or {},
+        scene=None if scene is None else OTHER_SCENE,
     )
     begin = time.perf_counter()
-    async with open_service(settings) as service:
+    given = {} if scene is None else {OTHER_SCENE: scene.model_dump_json()}
+    async with open_service(settings, given=GivenFiles({DocumentKind.SCENE: given})) as service:
         run = (await service.runtime.start_run(request)).id
         view = await service.runtime.wait_for_end(run)
         events = await service.journal.read(0, 1_000_000, run)
@@ -120,6 +135,7 @@ async def run_task(
         ],
         errors_mm,
         misplaced,
+        len({each.node for each in events if isinstance(each, ev.StepStarted)}),
         time.perf_counter() - begin,
     )
 

@@ -4,7 +4,7 @@ import asyncio
 import os
 import signal
 import sys
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -64,6 +64,18 @@ async def mend_run(folder: Path, *options: str, **environment: str) -> AsyncIter
 
 def door_of(service: ServiceProcess) -> str:
     return f"ws://127.0.0.1:{service.port}/ws/robot"
+
+
+@asynccontextmanager
+async def own_or_a_service(
+    folder: Path, port: int, through_a_service: bool
+) -> AsyncIterator[tuple[str, Sequence[str]]]:
+    """Where the robots of a run call, at a run's own door or a service's, and how it is told so."""
+    if not through_a_service:
+        yield f"ws://127.0.0.1:{port}/ws/robot", ()
+        return
+    async with service_process(folder) as service:
+        yield door_of(service), ("--url", service.url)
 
 
 LIVE = ("eket", "--world", "live")
@@ -162,10 +174,8 @@ KIT = ("kit", "--scene", str(EXAMPLES / "two_arms" / "kit_for_two.yaml"), "--wor
 async def test_two_robots_stand_where_the_scene_says_and_share_the_work(
     tmp_path: Path, *, through_a_service: bool
 ) -> None:
-    async with service_process(tmp_path) as service:
-        port = free_port()
-        at = ("--url", service.url) if through_a_service else ()
-        door = door_of(service) if through_a_service else f"ws://127.0.0.1:{port}/ws/robot"
+    port = free_port()
+    async with own_or_a_service(tmp_path, port, through_a_service) as (door, at):
         robots = ("--robot", "right=demo-2", "--robot", "left=demo-1")
         async with (
             example_robot(door, name="demo-1"),
@@ -206,10 +216,8 @@ async def test_who_stands_nowhere_in_the_scene_is_told_before_anybody_is_waited_
 async def test_ctrl_c_aborts_it_and_ends_the_waiting(
     tmp_path: Path, *, through_a_service: bool
 ) -> None:
-    async with service_process(tmp_path) as service:
-        port = free_port()
-        at = ("--url", service.url) if through_a_service else ()
-        door = door_of(service) if through_a_service else f"ws://127.0.0.1:{port}/ws/robot"
+    port = free_port()
+    async with own_or_a_service(tmp_path, port, through_a_service) as (door, at):
         options = (*LIVE, "--robot", "demo", *at)
         async with mend_run(tmp_path, *options, MEND_PORT=str(port)) as waiting:
             await waiting.says("Waiting for")

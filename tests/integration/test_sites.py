@@ -40,6 +40,14 @@ tree:
     - {{behavior: pick_and_place, object: {part}, place: {place}}}
 """
 
+BASE = """
+name: base
+scene: tower
+tree:
+  then:
+    - {behavior: pick_and_place, object: base, place: base}
+"""
+
 BENCH_FOR_TWO = """
 name: bench_for_two
 table: {height: 0.70, center: [0.62, 0.0], size: [0.66, 1.30]}
@@ -301,6 +309,7 @@ async def test_a_site_is_opened_used_and_closed_over_rest(tmp_path: Path) -> Non
 async def test_a_site_outlives_its_killed_process(tmp_path: Path) -> None:
     pytest.importorskip("pybullet")
     async with service(tmp_path) as found:
+        await found.library.trees.save("base", BASE)
         request = SiteRequest(scene="tower", world="workcell", speed="max")
         site = await found.sites.open_site(request)
         world = found.sites._sites[site.id].world
@@ -309,7 +318,7 @@ async def test_a_site_outlives_its_killed_process(tmp_path: Path) -> None:
         assert first is not None
         os.kill(first, signal.SIGKILL)
         await until_told(found, site.id, "site_restarted")
-        await done(found, await begin(found, "tower", site.id))
+        await done(found, await begin(found, "base", site.id))
         assert world._handle.pid != first
 
 

@@ -4,6 +4,7 @@ import pytest
 import schemathesis
 from hypothesis import HealthCheck, settings
 from plain_problems import told_plainly
+from sampled import sample
 from schemathesis.checks import not_a_server_error
 from schemathesis.pytest.lazy import get_all_tests
 from schemathesis.specs.openapi.checks import (
@@ -13,7 +14,9 @@ from schemathesis.specs.openapi.checks import (
 )
 from service_under_test import build
 
-SETTINGS = settings(max_examples=10, deadline=None, suppress_health_check=list(HealthCheck))
+SETTINGS = settings(
+    max_examples=sample(5, 10), deadline=None, suppress_health_check=list(HealthCheck)
+)
 
 
 @pytest.mark.slow(10)

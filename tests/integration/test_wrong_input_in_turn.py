@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, Phase, seed, settings
 from hypothesis.errors import FlakyStrategyDefinition
 from hypothesis.stateful import run_state_machine_as_test
 from plain_problems import told_plainly
+from sampled import sample
 from schemathesis.checks import not_a_server_error
 from schemathesis.specs.openapi.checks import (
     content_type_conformance,
@@ -45,7 +46,7 @@ WAY = [
 BEHIND_A_RUN = set(WAY[WAY.index("get_run") :]) - {"list_dialogues"}
 """What has to be given the id of a run, of its dialogue or of a picture."""
 
-MACHINES = 8
+MACHINES = sample(5, 8)
 
 
 class TroubledRuns(FakeRuns):

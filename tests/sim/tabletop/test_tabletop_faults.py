@@ -4,6 +4,7 @@ import math
 
 import pytest
 from agent_driver import Driver
+from sampled import sample
 
 from mend.robots.link.messages import Finished, Holding, Interrupt, Intervene, Look, Looked, Resume
 from mend.sim.tabletop.adapter import TabletopAdapter
@@ -224,10 +225,10 @@ def test_parts_without_faults_are_placed_without_an_alarm(noise: float) -> None:
 
 @pytest.mark.slow
 def test_parts_of_the_fullest_table_are_placed_without_an_alarm() -> None:
-    # Every seventh of them: `benchmarks/random_scenarios.py` works off whole tables.
+    # Some of them: `benchmarks/random_scenarios.py` works off whole tables.
     scene = lay_out([(f"o{i}", f"p{i}") for i in range(64)], seed=9)
     driver = make_driver(scene)
-    chosen = range(0, 64, 7)
+    chosen = range(0, 64, sample(21, 7))
     for index in chosen:
         driver.start(f"o{index}", f"p{index}", execution=f"e{index}")
         driver.run()

@@ -1,0 +1,44 @@
+"""Shipped tasks that are done for the most part: long ones for short tests."""
+
+import random
+
+from mend.server.behaviors import behavior_parameters
+from mend.tasks.definition import BehaviorNode
+from mend.tasks.scene import Pose, Scatter, Scene
+from mend.tasks.task_file import check_built_in_task
+
+
+def begun(task: str, left: int, seed: int) -> Scene:
+    """The scene of a shipped task, in which the parts of all but `left` leaves are at their places.
+
+    Which leaves, says the seed. Those parts lie exactly there, the others are scattered as the
+    scene says. Only for tasks in which nothing is put onto anything.
+    """
+    checked = check_built_in_task(task, behavior_parameters())
+    scene = checked.scene
+    assert scene is not None
+    assert all(place.pose.z is None for place in scene.places.values())
+    leaves = [each for each in checked.definition.nodes if isinstance(each, BehaviorNode)]
+    chance = random.Random(seed)
+    there = {
+        leaf.object: scene.places[leaf.place].pose
+        for leaf in chance.sample(leaves, len(leaves) - left)
+        if leaf.object is not None and leaf.place is not None
+    }
+    objects = {
+        name: part.model_copy(
+            update={"pose": there.get(name) or _scattered(part.pose, scene.scatter, chance)}
+        )
+        for name, part in scene.objects.items()
+    }
+    return scene.model_copy(update={"objects": objects, "scatter": Scatter()})
+
+
+def _scattered(pose: Pose, scatter: Scatter, chance: random.Random) -> Pose:
+    return pose.model_copy(
+        update={
+            "x": pose.x + chance.uniform(-scatter.xy, scatter.xy),
+            "y": pose.y + chance.uniform(-scatter.xy, scatter.xy),
+            "yaw": pose.yaw + chance.uniform(-scatter.yaw, scatter.yaw),
+        }
+    )
