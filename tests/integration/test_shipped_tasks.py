@@ -11,7 +11,7 @@ from sampled import sample
 
 from mend.tasks.library import TREES
 
-LEFT = {"workshop": 8, "kit": 6, "tea_table": 6}
+LEFT = {"workshop": 6, "kit": 4, "tea_table": 5}
 ALL = 1000
 
 

@@ -11,6 +11,7 @@ from uuid import UUID
 
 import pytest
 from broken_constraints import broken_constraints
+from given_documents import given_documents
 from touching_robots import touching_robots
 from untruths import kinds_of
 
@@ -73,18 +74,18 @@ async def service(folder: Path) -> AsyncIterator[Service]:
     settings = Settings(
         port=0, journal=folder / "journal.db", log_level="error", speech_voice="none"
     )
-    async with open_service(settings) as found:
-        if "bench_for_two" not in await found.journal.documents("scene"):
-            await found.library.scenes.save("bench_for_two", BENCH_FOR_TWO)
-            for name, part, place in (
-                ("red_near", "red_box", "near_left"),
-                ("red_back", "red_box", "far_left"),
-                ("blue_near", "blue_box", "near_right"),
-                ("green_near", "green_box", "middle_near"),
-                ("green_far", "green_box", "middle_far"),
-            ):
-                text = THERE_AND_BACK.format(name=name, part=part, place=place)
-                await found.library.trees.save(name, text)
+    trees = {
+        name: THERE_AND_BACK.format(name=name, part=part, place=place)
+        for name, part, place in (
+            ("red_near", "red_box", "near_left"),
+            ("red_back", "red_box", "far_left"),
+            ("blue_near", "blue_box", "near_right"),
+            ("green_near", "green_box", "middle_near"),
+            ("green_far", "green_box", "middle_far"),
+        )
+    }
+    given = given_documents({**trees, "base": BASE}, {"bench_for_two": BENCH_FOR_TWO})
+    async with open_service(settings, given=given) as found:
         yield found
 
 
@@ -309,7 +310,6 @@ async def test_a_site_is_opened_used_and_closed_over_rest(tmp_path: Path) -> Non
 async def test_a_site_outlives_its_killed_process(tmp_path: Path) -> None:
     pytest.importorskip("pybullet")
     async with service(tmp_path) as found:
-        await found.library.trees.save("base", BASE)
         request = SiteRequest(scene="tower", world="workcell", speed="max")
         site = await found.sites.open_site(request)
         world = found.sites._sites[site.id].world
