@@ -237,7 +237,7 @@ async def test_a_world_that_ends_just_before_a_run_borrows_its_robots_is_started
             await done(found, await begin(found, "red_near", view.id))
 
 
-@pytest.mark.slow(20)
+@pytest.mark.slow(6)
 @pytest.mark.parametrize("seed", range(3))
 async def test_runs_that_come_and_go_never_touch_and_all_end(tmp_path: Path, seed: int) -> None:
     """Random runs on whichever robots are free; some are aborted, and the world dies now and then.
@@ -306,7 +306,7 @@ async def test_a_site_is_opened_used_and_closed_over_rest(tmp_path: Path) -> Non
         assert await client.sites() == []
 
 
-@pytest.mark.slow(20)
+@pytest.mark.slow(7)
 async def test_a_site_outlives_its_killed_process(tmp_path: Path) -> None:
     pytest.importorskip("pybullet")
     async with service(tmp_path) as found:
