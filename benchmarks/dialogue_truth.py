@@ -26,6 +26,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 
 from broken_constraints import broken_constraints
 from dialogue_judge import DialogueJudge, Untruth
+from given_documents import given_documents
 from random_scenarios import MOST_LEAVES, draw
 from untruths import find_untruths, kinds_of
 from watched_world import WatchedWorld, where_parts_rest
@@ -91,10 +92,9 @@ async def run_once(world: str, kind: str, seed: int, *, show: bool = False) -> O
         interventions="random",
         person=helper.person,
     )
-    async with open_service(settings) as service:
-        if drawn.scene is not None:
-            await service.library.scenes.save("random", drawn.scene)
-        await service.library.trees.save("random", drawn.tree)
+    scenes = {} if drawn.scene is None else {"random": drawn.scene}
+    given = given_documents({"random": drawn.tree}, scenes)
+    async with open_service(settings, given=given) as service:
         watched = WatchedWorld(service.journal)
         run = (await service.runtime.start_run(request)).id
         view = await asyncio.wait_for(service.runtime.wait_for_end(run), 600.0)

@@ -98,9 +98,9 @@ async def run_task(
 ) -> Outcome:
     """One run of a shipped task with nobody there to help, in its own scene or in another one."""
     # Only here, so that a worker's limits on threads come before the libraries that heed them.
+    from given_documents import given_documents
+
     from mend.server.composition import open_service
-    from mend.server.documents import DocumentKind
-    from mend.server.fixed_documents import GivenFiles
 
     settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
     request = RunRequest(
@@ -113,8 +113,8 @@ async def run_task(
         scene=None if scene is None else OTHER_SCENE,
     )
     begin = time.perf_counter()
-    given = {} if scene is None else {OTHER_SCENE: scene.model_dump_json()}
-    async with open_service(settings, given=GivenFiles({DocumentKind.SCENE: given})) as service:
+    scenes = {} if scene is None else {OTHER_SCENE: scene.model_dump_json()}
+    async with open_service(settings, given=given_documents({}, scenes)) as service:
         run = (await service.runtime.start_run(request)).id
         view = await service.runtime.wait_for_end(run)
         events = await service.journal.read(0, 1_000_000, run)

@@ -236,10 +236,14 @@ async def run_once(
 ) -> Outcome:
     """One random scenario on a service of its own, judged."""
     # Only here, so that a worker's limits on threads come before the libraries that heed them.
+    from given_documents import given_documents
+
     from mend.server.composition import open_service
 
     answers = KINDS[seed % len(KINDS)]
     drawn = draw(world, seed, most_leaves or MOST_LEAVES[world], robots)
+    scenes = {} if drawn.scene is None else {"random": drawn.scene}
+    given = given_documents({"random": drawn.tree}, scenes)
     settings = Settings(
         port=0,
         journal=Path(IN_MEMORY),
@@ -249,10 +253,7 @@ async def run_once(
     )
     began = time.perf_counter()
     with touching_robots() as touched:
-        async with open_service(settings) as service:
-            if drawn.scene is not None:
-                await service.library.scenes.save("random", drawn.scene)
-            await service.library.trees.save("random", drawn.tree)
+        async with open_service(settings, given=given) as service:
             watched = WatchedWorld(service.journal)
             run = (await service.runtime.start_run(request(world, seed, answers))).id
             taker = LeafTaker(service, run, random.Random(seed))

@@ -29,7 +29,7 @@ RESOLUTIONS = [
 ]
 
 
-@pytest.mark.slow(15)
+@pytest.mark.slow(20)
 @pytest.mark.parametrize("world", ["tabletop", "workcell"])
 async def test_the_base_is_built_through_every_fault(world: str, tmp_path: Path) -> None:
     settings = Settings(port=0, data_dir=tmp_path, speech_voice="none")

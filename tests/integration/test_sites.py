@@ -11,6 +11,7 @@ from uuid import UUID
 
 import pytest
 from broken_constraints import broken_constraints
+from given_documents import given_documents
 from touching_robots import touching_robots
 from untruths import kinds_of
 
@@ -73,18 +74,18 @@ async def service(folder: Path) -> AsyncIterator[Service]:
     settings = Settings(
         port=0, journal=folder / "journal.db", log_level="error", speech_voice="none"
     )
-    async with open_service(settings) as found:
-        if "bench_for_two" not in await found.journal.documents("scene"):
-            await found.library.scenes.save("bench_for_two", BENCH_FOR_TWO)
-            for name, part, place in (
-                ("red_near", "red_box", "near_left"),
-                ("red_back", "red_box", "far_left"),
-                ("blue_near", "blue_box", "near_right"),
-                ("green_near", "green_box", "middle_near"),
-                ("green_far", "green_box", "middle_far"),
-            ):
-                text = THERE_AND_BACK.format(name=name, part=part, place=place)
-                await found.library.trees.save(name, text)
+    trees = {
+        name: THERE_AND_BACK.format(name=name, part=part, place=place)
+        for name, part, place in (
+            ("red_near", "red_box", "near_left"),
+            ("red_back", "red_box", "far_left"),
+            ("blue_near", "blue_box", "near_right"),
+            ("green_near", "green_box", "middle_near"),
+            ("green_far", "green_box", "middle_far"),
+        )
+    }
+    given = given_documents({**trees, "base": BASE}, {"bench_for_two": BENCH_FOR_TWO})
+    async with open_service(settings, given=given) as found:
         yield found
 
 
@@ -236,7 +237,7 @@ async def test_a_world_that_ends_just_before_a_run_borrows_its_robots_is_started
             await done(found, await begin(found, "red_near", view.id))
 
 
-@pytest.mark.slow(20)
+@pytest.mark.slow(6)
 @pytest.mark.parametrize("seed", range(3))
 async def test_runs_that_come_and_go_never_touch_and_all_end(tmp_path: Path, seed: int) -> None:
     """Random runs on whichever robots are free; some are aborted, and the world dies now and then.
@@ -305,11 +306,10 @@ async def test_a_site_is_opened_used_and_closed_over_rest(tmp_path: Path) -> Non
         assert await client.sites() == []
 
 
-@pytest.mark.slow(20)
+@pytest.mark.slow(7)
 async def test_a_site_outlives_its_killed_process(tmp_path: Path) -> None:
     pytest.importorskip("pybullet")
     async with service(tmp_path) as found:
-        await found.library.trees.save("base", BASE)
         request = SiteRequest(scene="tower", world="workcell", speed="max")
         site = await found.sites.open_site(request)
         world = found.sites._sites[site.id].world

@@ -179,7 +179,6 @@ class PathPlanner:
         joints = start
         segments: list[PathSegment] = []
         cost = 0.0
-        hit: SeenBox | None = None
         for index, waypoint in enumerate(waypoints):
             target = pose_matrix(waypoint, yaw_offset)
             origin = self._chain.pose(joints)
@@ -199,13 +198,14 @@ class PathPlanner:
                 cost += self._cost(joints, knots[-1], first=index == 0)
                 curve = JointCurve([joints, *knots])
             way = PathSegment(curve, straight)
-            touched = None if obstacles is None else obstacles.on(index, way)
-            if touched is not None and straight:
-                return touched
-            hit = hit or touched
+            if straight and obstacles is not None:
+                touched = obstacles.on(index, way)
+                if touched is not None:
+                    return touched
             segments.append(way)
             joints = knots[-1]
-        return _Tried(cost, JointPath(tuple(segments)), hit)
+        # Only now, as it takes longest: what free ways touch is nothing where no way leads on.
+        return _Tried(cost, JointPath(tuple(segments)), _on_free_ways(segments, obstacles))
 
     def _straight(self, origin: Matrix4, target: Matrix4, joints: Joints) -> list[Joints] | None:
         knots = []
@@ -273,6 +273,14 @@ class PathPlanner:
         away = np.abs(end - self._preferred)
         move = 0.3 * away.max() if first else np.abs(end - start).max()
         return float(move + 0.7 * away[_WRIST].max())
+
+
+def _on_free_ways(ways: Sequence[PathSegment], obstacles: Obstacles | None) -> SeenBox | None:
+    """The first thing that a path would touch on what is not straight of it."""
+    if obstacles is None:
+        return None
+    touched = (obstacles.on(each, way) for each, way in enumerate(ways) if not way.straight)
+    return next((box for box in touched if box is not None), None)
 
 
 def _denser(knots: Sequence[Joints]) -> list[Joints]:
