@@ -34,6 +34,12 @@ PHRASES: Mapping[LeafDeed, tuple[str, ...]] = {
     ),
 }  # fmt: skip
 
+_LONGEST_FIRST = sorted(
+    ((phrase, deed) for deed, phrases in PHRASES.items() for phrase in phrases),
+    key=lambda each: -len(each[0]),
+)
+"""'I do not do the saucer' fits 'I do ...' too."""
+
 
 @dataclass(frozen=True, slots=True)
 class Said:
@@ -46,12 +52,11 @@ class Said:
 def understood(words: str) -> Said:
     """What somebody says. Raises `WrongInputError` where it is nothing of a leaf."""
     plain = " ".join(re.sub(r"[.,!?]", " ", words.replace("’", "'")).lower().split())
-    for deed, phrases in PHRASES.items():
-        for phrase in phrases:
-            before, _, after = phrase.partition(PART)
-            if len(plain) > len(before) + len(after) and _is_between(plain, before, after):
-                part = plain[len(before) : len(plain) - len(after)]
-                return Said(deed, part.removeprefix("the "))
+    for phrase, deed in _LONGEST_FIRST:
+        before, _, after = phrase.partition(PART)
+        if len(plain) > len(before) + len(after) and _is_between(plain, before, after):
+            part = plain[len(before) : len(plain) - len(after)]
+            return Said(deed, part.removeprefix("the "))
     raise WrongInputError(
         f"'{words}' says nothing of a leaf: say 'I do the ...' with the name of its part, or "
         "'I give the ... back'"

@@ -15,7 +15,13 @@ def test_these_take_it(words: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "words", ["I give the saucer back", "I'll give the saucer back.", "I don't do the saucer"]
+    "words",
+    [
+        "I give the saucer back",
+        "I'll give the saucer back.",
+        "I don't do the saucer",
+        "I do not do the saucer",
+    ],
 )
 def test_these_give_it_back(words: str) -> None:
     assert understood(words) == Said(LeafDeed.GIVE_BACK, "saucer")
