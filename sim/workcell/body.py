@@ -21,6 +21,7 @@ from mend.sim.workcell.finger_hulls import Hull
 from mend.sim.workcell.finger_motion import FingerMotion
 from mend.sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
 from mend.sim.workcell.pr2 import JOINT_DAMPING_NM_S, Pr2
+from mend.sim.workcell.reach import ARM_ROOM, HAND_OVER_POSE, pr2_reach
 from mend.sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
@@ -46,16 +47,6 @@ makes it, nor jumps when what held it up gives way."""
 
 _GIVE_UP_CYCLES = 240
 """An arm that was held up for so long stays where it is."""
-
-HAND_OVER_POSE = ToolPose(0.50, -0.30, 0.98, 0.0)
-
-REACH_MIN_M = 0.30
-REACH_MAX_M = 0.81
-"""Nothing is grasped outside this range, wherever and however high it is; within, plans decide."""
-
-
-_AROUND_M = 0.30
-"""Elbow, forearm and gripper are within this of the lines between shoulder and tool."""
 
 
 class WorkcellBody:
@@ -111,14 +102,11 @@ class WorkcellBody:
 
     @property
     def reach(self) -> Reach:
-        return Reach(self.pr2.shoulder, REACH_MIN_M, REACH_MAX_M)
+        return pr2_reach()
 
     @property
     def room(self) -> ArmRoom:
-        x, y = (float(each) for each in self.pr2.tool.pose(np.array(NEUTRAL_RAD))[:2, 3])
-        return ArmRoom(
-            [self.pr2.shoulder, (x, y)], (HAND_OVER_POSE.x, HAND_OVER_POSE.y), _AROUND_M
-        )
+        return ARM_ROOM
 
     def time_s(self) -> float:
         return self._clock.time_s()

@@ -19,7 +19,6 @@ from mend.sim.workcell.robot_model import (
     FINGER_JOINTS,
     FOREARM_CAMERA_FRAME,
     NEUTRAL_RAD,
-    SHOULDER_FRAME,
     TOOL_FRAME,
     robot_urdf,
 )
@@ -88,8 +87,6 @@ class Pr2:
         self.tool = KinematicChain(urdf, TOOL_FRAME, ARM_JOINTS)
         self.collisions = CollisionModel(urdf, ARM_JOINTS, TOOL_FRAME)
         self._forearm_camera = KinematicChain(urdf, FOREARM_CAMERA_FRAME, _FOREARM_JOINTS)
-        shoulder = KinematicChain(urdf, SHOULDER_FRAME, ARM_JOINTS[:1]).pose(np.zeros(1))
-        self.shoulder = (float(shoulder[0, 3]), float(shoulder[1, 3]))
         self._hulls = FingerHulls(urdf)
         self._set_up_dynamics(link_of)
         self._paint(link_of)
