@@ -31,6 +31,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from pathlib import Path
@@ -248,7 +249,7 @@ async def run_once(
         person_leaf_s=FORGOTTEN_S,
     )
     began = time.perf_counter()
-    with touching_robots() as touched:
+    with touching_robots() if robots > 1 else nullcontext([]) as touched:
         async with open_service(settings) as service:
             if drawn.scene is not None:
                 await service.library.scenes.save("random", drawn.scene)

@@ -1,7 +1,8 @@
 """The space over the table that an arm has where several work: at rest, and for a leaf."""
 
 from collections.abc import Sequence
-from math import hypot
+from itertools import combinations
+from math import atan2, ceil, cos, hypot, pi, remainder, sin
 from typing import Protocol
 
 from shapely import MultiPoint
@@ -12,6 +13,19 @@ from mend.tasks.scene import SceneObject
 
 Flat = tuple[float, float]
 """A point of the scene's plane."""
+
+
+_ARC_STEP_RAD = 0.15
+
+
+class Swings(Protocol):
+    """A `Swing`, or what a robot says of its own on the link."""
+
+    @property
+    def pivot(self) -> Flat: ...
+
+    @property
+    def tool(self) -> Flat: ...
 
 
 class Room(Protocol):
@@ -25,6 +39,9 @@ class Room(Protocol):
 
     @property
     def around_m(self) -> float: ...
+
+    @property
+    def swing(self) -> Swings | None: ...
 
 
 def home_points(frame: Frame, room: Room) -> list[Flat]:
@@ -50,7 +67,21 @@ def leaf_space(
     `handed_over`: also where people hold it out.
     """
     around_m = room.around_m + (0.0 if part is None else hypot(*part.size[:2]) / 2)
-    corners = [*home_points(frame, room), *ends]
-    if handed_over:
-        corners.append(frame.to_scene(*room.hand_over))
+    tools = [*ends, frame.to_scene(*room.hand_over)] if handed_over else list(ends)
+    corners = [*home_points(frame, room), *tools]
+    if room.swing is not None:
+        pivot = frame.to_scene(*room.swing.pivot)
+        tools.append(frame.to_scene(*room.swing.tool))
+        for one, two in combinations(tools, 2):
+            corners += _arc(pivot, one, two)
     return MultiPoint(corners).convex_hull.buffer(around_m)
+
+
+def _arc(pivot: Flat, one: Flat, two: Flat) -> list[Flat]:
+    """Points from the direction of one to that of the other, as far away as the farther one."""
+    directions = [atan2(each[1] - pivot[1], each[0] - pivot[0]) for each in (one, two)]
+    away_m = max(hypot(each[0] - pivot[0], each[1] - pivot[1]) for each in (one, two))
+    turn = remainder(directions[1] - directions[0], 2 * pi)
+    steps = max(1, ceil(abs(turn) / _ARC_STEP_RAD))
+    angles = [directions[0] + turn * step / steps for step in range(steps + 1)]
+    return [(pivot[0] + away_m * cos(each), pivot[1] + away_m * sin(each)) for each in angles]

@@ -269,8 +269,12 @@ class WorkcellWorld:
         held = self._all_held()
         return held[0].name if held else None
 
+    def held_by(self, body: WorkcellBody) -> RigidPart | None:
+        """What the fingers of one robot really hold; for tests and benchmarks to judge by."""
+        return self._bench.held(body.pr2)
+
     def _all_held(self) -> list[RigidPart]:
-        held = (self._bench.held(each.pr2) for each in self.bodies)
+        held = (self.held_by(each) for each in self.bodies)
         return [part for part in held if part is not None]
 
     def _choose_iterations(self) -> None:
