@@ -46,8 +46,11 @@ def check_for_each_robot(
     def asked(name: str, place: str | None) -> Sequence[int]:
         return _asked(members, ways, name, place)
 
-    crowded = [*_resting_together(members), *_never_begun(members, ways)]
-    return crowded or check_for_robots(scene, nodes, robots, asked)
+    return (
+        _resting_together(members)
+        or _never_begun(members, ways)
+        or check_for_robots(scene, nodes, robots, asked)
+    )
 
 
 class _Member:
@@ -138,34 +141,32 @@ def _resting_together(members: Sequence[_Member]) -> list[SceneProblem]:
 
 
 def _never_begun(members: Sequence[_Member], ways: _Ways) -> list[SceneProblem]:
-    """Leaves that nobody may ever begin, and robots that may never begin any that they reach."""
-    found = []
+    """Leaves that nobody may ever begin; else robots that may never begin any that they reach."""
     reached = {each.name: [way for way in ways.all if each.reaches(way.ends)] for each in members}
     free = {
         each.name: [way for way in reached[each.name] if each.keeps_out_of(members, way)]
         for each in members
     }
+    found = []
     for way in ways.all:
         able = [name for name, some in reached.items() if way in some]
         if able and not any(way in free[name] for name in able):
             found.append(
                 SceneProblem(
                     ("objects", way.leaf.object or ""),
-                    f"no robot may ever take {way.leaf.object} to its place: "
-                    f"{_named(able)} would go where another arm rests: move the part, its place or "
-                    "the robots",
+                    f"no robot may ever handle {way.leaf.object}: {_named(able)} would go where "
+                    "another arm rests: move the part, its place or the robots",
                 )
             )
-    for each in members:
-        if reached[each.name] and not free[each.name]:
-            found.append(
-                SceneProblem(
-                    ("robots", each.name),
-                    f"the robot '{each.name}' may never begin anything: for all that it reaches it "
-                    "would go where another arm rests: have it stand farther from the others",
-                )
-            )
-    return found
+    return found or [
+        SceneProblem(
+            ("robots", each.name),
+            f"the robot '{each.name}' may never begin anything: for all that it reaches it would "
+            "go where another arm rests: have it stand farther from the others",
+        )
+        for each in members
+        if reached[each.name] and not free[each.name]
+    ]
 
 
 def _named(robots: Sequence[str]) -> str:
