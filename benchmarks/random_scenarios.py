@@ -31,6 +31,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from pathlib import Path
@@ -252,7 +253,7 @@ async def run_once(
         person_leaf_s=FORGOTTEN_S,
     )
     began = time.perf_counter()
-    with touching_robots() as touched:
+    with touching_robots() if robots > 1 else nullcontext([]) as touched:
         async with open_service(settings, given=given) as service:
             watched = WatchedWorld(service.journal)
             run = (await service.runtime.start_run(request(world, seed, answers))).id

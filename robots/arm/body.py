@@ -38,16 +38,27 @@ class Reach:
 
 
 @dataclass(frozen=True, slots=True)
+class Swing:
+    """An arm that turns about `pivot`; `tool` is where its tool point rests (base frame)."""
+
+    pivot: tuple[float, float]
+    tool: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
 class ArmRoom:
     """The room that an arm takes in the plane (base frame, metres).
 
     All of it is within `around_m` of the convex hull of `resting` (the corners of what it covers at
-    rest) and of where its tool is to go; `hand_over`: where it takes what people hold out.
+    rest) and of where its tool is to go; `hand_over`: where it takes what people hold out. With
+    `swing` the hull is also that of the arcs about its pivot between any two places of the tool,
+    each with the radius of the farther one.
     """
 
     resting: Sequence[tuple[float, float]]
     hand_over: tuple[float, float]
     around_m: float
+    swing: Swing | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

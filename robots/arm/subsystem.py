@@ -30,6 +30,7 @@ from mend.robots.link.messages import (
     ReportBody,
     RoomLimits,
     Start,
+    SwingLimits,
 )
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.warming_up import warm_up
@@ -85,8 +86,12 @@ class ArmSubsystem:
     @property
     def room(self) -> RoomLimits:
         room = self._body.room
+        swing = room.swing
         return RoomLimits(
-            resting=list(room.resting), hand_over=room.hand_over, around_m=room.around_m
+            resting=list(room.resting),
+            hand_over=room.hand_over,
+            around_m=room.around_m,
+            swing=None if swing is None else SwingLimits(pivot=swing.pivot, tool=swing.tool),
         )
 
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> ArmExecution:

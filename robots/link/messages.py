@@ -95,16 +95,25 @@ class ReachLimits(Message):
     max_m: Coordinate
 
 
+class SwingLimits(Message):
+    """An arm that turns about `pivot`; `tool` is where its tool point rests, in metres."""
+
+    pivot: tuple[Coordinate, Coordinate]
+    tool: tuple[Coordinate, Coordinate]
+
+
 class RoomLimits(Message):
     """The room that an arm takes in the plane, in metres.
 
     All of it is within `around_m` of the convex hull of `resting` (the corners of what it covers at
-    rest) and of where its tool is to go; `hand_over`: where it takes what people hold out.
+    rest) and of where its tool is to go; `hand_over`: where it takes what people hold out. With
+    `swing` the hull is also that of the arcs about its pivot between any two places of the tool.
     """
 
     resting: Annotated[list[tuple[Coordinate, Coordinate]], Field(min_length=1, max_length=16)]
     hand_over: tuple[Coordinate, Coordinate]
     around_m: Annotated[Coordinate, Field(ge=0)]
+    swing: SwingLimits | None = None
 
 
 class Detection(Message):

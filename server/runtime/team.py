@@ -15,15 +15,12 @@ from typing import TYPE_CHECKING, Protocol
 from shapely import MultiPoint, Point, box
 from shapely.geometry.base import BaseGeometry
 
+from mend.robots.arm.shared_space import Flat, home, leaf_space
 from mend.tasks.scene import Scene
 
 if TYPE_CHECKING:
     from mend.server.runtime.robot_proxy import RobotProxy
     from mend.tasks.definition import BehaviorNode
-
-Flat = tuple[float, float]
-"""A point of the scene's plane."""
-
 
 EVERYWHERE = box(-1e6, -1e6, 1e6, 1e6)
 """The space of an arm of which nobody knows where it is: all that a robot can name."""
@@ -180,13 +177,8 @@ class Team:
         if proxy.room is None:
             return EVERYWHERE
         part = self._scene.objects.get(leaf.object or "")
-        around_m = proxy.room.around_m
-        around_m += 0.0 if part is None else hypot(*part.size[:2]) / 2
-        corners = [*_home_points(proxy), *self._ends(leaf)]
-        if handed_over:
-            corners.append(proxy.frame.to_scene(*proxy.room.hand_over))
-        hull = MultiPoint(corners).convex_hull
-        return hull.buffer(around_m)
+        ends = self._ends(leaf)
+        return leaf_space(proxy.frame, proxy.room, ends, part, handed_over=handed_over)
 
     def _ends(self, leaf: "BehaviorNode") -> list[Flat]:
         """Where a leaf's object was seen, by whom it was seen last, and where it is to be."""
@@ -228,13 +220,6 @@ def held_by(proxy: "RobotProxy") -> BaseGeometry:
     return _home(proxy) if proxy.area is None else proxy.area
 
 
-def _home_points(proxy: "RobotProxy") -> list[Flat]:
-    assert proxy.room is not None
-    return [proxy.frame.to_scene(*each) for each in proxy.room.resting]
-
-
 def _home(proxy: "RobotProxy") -> BaseGeometry:
     """Where an arm is that rests."""
-    if proxy.room is None:
-        return Point()
-    return MultiPoint(_home_points(proxy)).convex_hull.buffer(proxy.room.around_m)
+    return Point() if proxy.room is None else home(proxy.frame, proxy.room)

@@ -22,10 +22,6 @@ _HIGHEST_M = 1.2
 """How far above the table the tool can go."""
 
 
-_AROUND_M = 0.10
-"""So far from the tool point the gripper reaches in the plane, with some room to spare."""
-
-
 class StraightPlanner:
     """Plans of a gripper that floats: it has no arm that could touch anything."""
 
@@ -83,9 +79,7 @@ class TabletopBody:
 
     @property
     def room(self) -> ArmRoom:
-        home = self._manipulator.home
-        neutral, hand_over = home.neutral, home.hand_over
-        return ArmRoom([(neutral.x, neutral.y)], (hand_over.x, hand_over.y), _AROUND_M)
+        return self._manipulator.home.room
 
     def time_s(self) -> float:
         return self._state.time_s

@@ -3,26 +3,24 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mend.robots.arm.body import ToolPose
+from mend.robots.arm.body import ArmRoom, ToolPose
 from mend.sim.base_frame import tool_in_base, tool_in_scene
 from mend.sim.tabletop.arm import GRIPPER, CartesianArm, Gripper
 from mend.sim.tabletop.blocker import Blocker
 from mend.sim.tabletop.part import TablePart, UprightPose, Whereabouts
 from mend.sim.tabletop.resting import on_top, settle
-from mend.tasks.frames import Frame, frames_of
-from mend.tasks.scene import Scene, Table
-from mend.tasks.scene_problem import SceneProblem
+from mend.tasks.frames import Frame
+from mend.tasks.scene import Table
 
 PUSH_N = 120.0
 """How hard the arm pushes against somebody in its way."""
 
-_ROOM_AT_HOME_M = 0.30
-"""So far apart resting grippers are out of each other's way."""
+_AROUND_M = 0.10
+"""So far from the tool point the gripper reaches in the plane, with some room to spare."""
 
 _FINGER_M = 0.005
 """Fingers still grip what they overlap by less than they are wide."""
@@ -65,6 +63,12 @@ class Home:
                 0.0,
             ),
         )
+
+    @property
+    def room(self) -> ArmRoom:
+        """The room that the gripper takes, in that frame."""
+        neutral, hand_over = self.neutral, self.hand_over
+        return ArmRoom([(neutral.x, neutral.y)], (hand_over.x, hand_over.y), _AROUND_M)
 
 
 class Manipulator:
@@ -193,20 +197,3 @@ class Manipulator:
         fits = abs(at.along) + box.half_width(-at.yaw) <= self.gripper.started_at_m / 2
         beside = abs(at.aside) <= box.half_width(math.pi / 2 - at.yaw) + _FINGER_M
         return at if fits and beside else None
-
-
-def resting_together(scene: Scene) -> list[SceneProblem]:
-    """Robots that stand so that their grippers would rest in one place."""
-    homes = {
-        name: tool_in_scene(frame, Home.beside(frame.table_to_robot(scene.table)).neutral)
-        for name, frame in frames_of(scene).items()
-    }
-    return [
-        SceneProblem(
-            ("robots", two),
-            f"the robots '{one}' and '{two}' rest their grippers in one place, at "
-            f"({here.x:.2f}, {here.y:.2f}): have them stand on different sides of the table",
-        )
-        for (one, here), (two, there) in combinations(homes.items(), 2)
-        if math.hypot(here.x - there.x, here.y - there.y) < _ROOM_AT_HOME_M
-    ]

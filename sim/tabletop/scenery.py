@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,6 +13,7 @@ from mend.robots.vision.viewpoint import Viewpoint
 from mend.sim.base_frame import base_in_scene, tool_in_base
 from mend.sim.depth_noise import DepthNoise, PinholeOptics
 from mend.sim.lighting import Lighting
+from mend.sim.other_robots import blank_around
 from mend.sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
 from mend.sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
 from mend.sim.tabletop.gripper_shape import FINGER, PALM, finger_offset_m
@@ -37,8 +37,6 @@ _GREY = (0.45, 0.45, 0.45)
 TABLE_COLOR = (0.72, 0.70, 0.68)
 BLOCKER_COLOR = (0.30, 0.30, 0.32)
 _GRIPPER = (FINGER, FINGER, np.concatenate(PALM))
-_AROUND_PX = 9
-"""So wide around each pixel of another robot its depth is not believed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,11 +216,7 @@ class TabletopCamera:
     ) -> NDArray[np.float32]:
         """Depth with nothing measured where robots are that say where they are."""
         others = self._scenery.other_bodies(self._manipulator)
-        if not others:
-            return depth_m
-        there = np.isin(ids, others).astype(np.uint8)
-        around = cv2.dilate(there, np.ones((_AROUND_PX, _AROUND_PX), np.uint8))
-        return np.where(around > 0, np.float32(np.nan), depth_m)
+        return blank_around(depth_m, np.isin(ids, others)) if others else depth_m
 
 
 class HeadCamera(TabletopCamera):

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 
 from mend.robots.arm.body import Reach
-from mend.robots.arm.feasibility.check import check_scene
-from mend.robots.arm.feasibility.robots import check_for_each_robot
+from mend.robots.arm.feasibility.robots import ArmKind, check_for_each_robot
 from mend.robots.arm.subsystem import ArmSubsystem
 from mend.robots.catalogue import Catalogue
 from mend.robots.robot import Robot
@@ -14,7 +13,7 @@ from mend.sim.not_for_arms import not_for_arms
 from mend.sim.shared_world import SharedWorld
 from mend.sim.tabletop.body import StraightPlanner
 from mend.sim.tabletop.colors import learn_colors
-from mend.sim.tabletop.manipulator import resting_together
+from mend.sim.tabletop.manipulator import Home
 from mend.sim.tabletop.options import TabletopOptions
 from mend.sim.tabletop.scenery import head_viewpoint
 from mend.sim.tabletop.world import TabletopWorld, reach_for
@@ -38,16 +37,17 @@ class Tabletops:
         self, scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]
     ) -> list[SceneProblem]:
         """What keeps all robots from doing the leaves among `nodes` in a scene."""
-
-        def check(own: Scene) -> list[SceneProblem]:
-            planner = StraightPlanner(reach, own.table)
-            return check_scene(own, nodes, planner, head_viewpoint(own.table))
-
         if beyond := not_for_arms(scene, nodes):
             return beyond
         reach = self.reach(scene)
         lookalikes = find_lookalikes(scene, nodes, learn_colors(scene, TabletopOptions()))
-        return [*resting_together(scene), *check_for_each_robot(scene, nodes, check), *lookalikes]
+        kind = ArmKind(
+            reach,
+            lambda table: StraightPlanner(reach, table),
+            head_viewpoint,
+            lambda table: Home.beside(table).room,
+        )
+        return [*check_for_each_robot(scene, nodes, kind), *lookalikes]
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them.

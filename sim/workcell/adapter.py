@@ -3,9 +3,11 @@
 from pathlib import Path
 from typing import ClassVar
 
+from mend.robots.arm.body import Reach
 from mend.sim.listed_world import ListedWorld
 from mend.sim.workcell.options import WorkcellOptions
 from mend.sim.workcell.robot_model import MODEL, check_installed, robot_urdf
+from mend.tasks.scene import Scene
 
 
 class WorkcellAdapter(ListedWorld):
@@ -17,6 +19,11 @@ class WorkcellAdapter(ListedWorld):
     lays_out_anything = False
     options = WorkcellOptions
     model = MODEL
+
+    def reach(self, scene: Scene) -> Reach:
+        """How far each robot reaches."""
+        reach: Reach = self._made_by().reach(scene)
+        return reach
 
     def model_folder(self) -> Path:
         """The trimmed PR2's files; made on the first call on a machine."""

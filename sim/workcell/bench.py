@@ -1,6 +1,6 @@
 """The table and the parts on it, as a scene says."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -72,9 +72,9 @@ class Bench:
                 return part
         return None
 
-    def remember_rests(self, pr2: Pr2, in_hand: Callable[[RigidPart], bool]) -> None:
+    def remember_rests(self, robots: Iterable[Pr2], in_hand: Callable[[RigidPart], bool]) -> None:
         """Where parts lie still, touched by nobody, is where they last rested."""
-        touched = pr2.touched()
+        touched = set().union(*(each.touched() for each in robots))
         for part in self.parts.values():
             if part.body_id not in touched and not part.stolen and not in_hand(part):
                 part.remember_rest()

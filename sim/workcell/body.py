@@ -15,12 +15,13 @@ from mend.robots.arm.motion.timing import TimedMotion
 from mend.robots.body import Camera, Matrix4
 from mend.robots.vision.seen_box import SeenBox
 from mend.sim.workcell.arm_planner import plan_legs
+from mend.sim.workcell.clock import PERIOD_S, Clock
 from mend.sim.workcell.effort_sensors import ENCODER_NOISE_M, FINGER_NOISE_N
 from mend.sim.workcell.finger_hulls import Hull
 from mend.sim.workcell.finger_motion import FingerMotion
 from mend.sim.workcell.gripper import PR2_GRIPPER, finger_angle_rad
-from mend.sim.workcell.physics import CONTROL_HZ
 from mend.sim.workcell.pr2 import JOINT_DAMPING_NM_S, Pr2
+from mend.sim.workcell.reach import ARM_ROOM, HAND_OVER_POSE, pr2_reach
 from mend.sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
@@ -29,8 +30,6 @@ from mend.sim.workcell.robot_model import (
     PREFERRED_RAD,
 )
 from mend.sim.workcell.touch import Touch
-
-PERIOD_S = 1.0 / CONTROL_HZ
 
 LIMITS = MotionLimits(
     velocity_rad_s=1.6,
@@ -49,21 +48,12 @@ makes it, nor jumps when what held it up gives way."""
 _GIVE_UP_CYCLES = 240
 """An arm that was held up for so long stays where it is."""
 
-HAND_OVER_POSE = ToolPose(0.50, -0.30, 0.98, 0.0)
-
-REACH_MIN_M = 0.30
-REACH_MAX_M = 0.81
-"""Nothing is grasped outside this range, wherever and however high it is; within, plans decide."""
-
-
-_AROUND_M = 0.30
-"""Elbow, forearm and gripper are within this of the lines between shoulder and tool."""
-
 
 class WorkcellBody:
     """The right arm, gripper and cameras of a simulated PR2.
 
-    It knows its own joint angles and what its joints feel, and nothing else of the world.
+    It knows its own joint angles and what its joints feel, and nothing else of the world. All
+    poses are in its base frame.
     """
 
     cameras: Mapping[str, Camera]
@@ -73,19 +63,22 @@ class WorkcellBody:
         pr2: Pr2,
         rng: np.random.Generator,
         sensor_rng: np.random.Generator,
-        step: Callable[[], None],
+        clock: Clock,
+        advance_world: Callable[[], None],
     ) -> None:
-        """`step` lets the rest of the world make one physics step."""
-        self._pr2 = pr2
+        """`advance_world` lets one control cycle pass for everything, this body included."""
+        self.pr2 = pr2
         self._sensor_rng = sensor_rng
         self._touch = Touch(pr2.dynamics(), JOINT_DAMPING_NM_S, PERIOD_S, sensor_rng)
         self._rng = rng
-        self._step = step
+        self._clock = clock
+        self._advance_world = advance_world
         self._planner = PathPlanner(pr2.tool, np.array(PREFERRED_RAD))
-        self.cycle = 0
         self._target: Joints = np.array(NEUTRAL_RAD)
         self._motion: TimedMotion | None = None
         self._way_ahead: Sequence[PathSegment] = ()
+        self._to_hand_over: ArmPath | None = None
+        self._stretched_out = False
         self._settling_cycles = 0
         self._held_up_cycles = 0
         self._braking = False
@@ -101,7 +94,7 @@ class WorkcellBody:
         return (*ARM_JOINTS, *FINGER_JOINTS)
 
     def joint_positions(self) -> Sequence[float]:
-        return self._pr2.joint_positions()
+        return self.pr2.joint_positions()
 
     @property
     def control_period_s(self) -> float:
@@ -109,36 +102,39 @@ class WorkcellBody:
 
     @property
     def reach(self) -> Reach:
-        return Reach(self._pr2.shoulder, REACH_MIN_M, REACH_MAX_M)
+        return pr2_reach()
 
     @property
     def room(self) -> ArmRoom:
-        x, y = (float(each) for each in self._pr2.tool.pose(np.array(NEUTRAL_RAD))[:2, 3])
-        return ArmRoom(
-            [self._pr2.shoulder, (x, y)], (HAND_OVER_POSE.x, HAND_OVER_POSE.y), _AROUND_M
-        )
+        return ARM_ROOM
 
     def time_s(self) -> float:
-        return self.cycle * PERIOD_S
+        return self._clock.time_s()
 
     def advance_cycle(self) -> None:
+        self._advance_world()
+
+    def begin_cycle(self) -> None:
+        """Command the motors: what comes before the physics step that is everybody's."""
         velocities = self._advance_arm()
         self._gripper.advance()
-        self._pr2.drive(self._target, velocities, self._gripper.target_rad, self._braking)
+        self.pr2.drive(self._target, velocities, self._gripper.target_rad, self._braking)
         self._braking = False
         if self.gripper_in_use:
-            self._pr2.renew_contacts()
-        self._step()
-        self._pr2.sense()
-        self._touch.feel(*self._pr2.arm_motion())
-        self.cycle += 1
+            self.pr2.renew_contacts()
+
+    def end_cycle(self) -> None:
+        """Feel what has come of it: what comes after the physics step."""
+        self.pr2.sense()
+        self._touch.feel(*self.pr2.arm_motion())
 
     def go_neutral_at_once(self) -> None:
         """Be at neutral, at rest and with the gripper open (a rebuilt world)."""
         self._motion = None
+        self._stretched_out = False
         self._target = np.array(NEUTRAL_RAD)
         self._gripper = FingerMotion()
-        self._pr2.place_arm(self._target)
+        self.pr2.place_arm(self._target)
         self._touch.reset()
 
     def plan_path(self, waypoints: Sequence[ToolPose]) -> ArmPath | None:
@@ -151,14 +147,15 @@ class WorkcellBody:
 
     def plan_among(self, legs: Sequence[Leg], boxes: Sequence[SeenBox]) -> ArmPath | NoWay:
         """Plan through all legs so that nothing touches any of `boxes`."""
-        return plan_legs(self._planner, self._pr2.collisions, self._target, legs, boxes, self._rng)
+        return plan_legs(self._planner, self.pr2.collisions, self._target, legs, boxes, self._rng)
 
     def plan_neutral(self) -> ArmPath:
         return self._planner.plan_to_joints(self._target, np.array(NEUTRAL_RAD))
 
     def plan_hand_over(self) -> ArmPath:
         path = _path(self._planner.plan(self._target, [HAND_OVER_POSE], self._rng))
-        return path if path is not None else self.plan_neutral()
+        self._to_hand_over = path if path is not None else self.plan_neutral()
+        return self._to_hand_over
 
     def follow(self, path: ArmPath, segment: int, speed: float) -> None:
         """Start one segment from wherever the arm is.
@@ -167,6 +164,7 @@ class WorkcellBody:
         """
         if not isinstance(path, JointPath):
             raise TypeError(f"this arm follows paths that it planned itself, not {type(path)}")
+        self._stretched_out = path is self._to_hand_over
         way = path.ways[segment]
         curve = way.curve.joined_from(self._target)
         self._motion = TimedMotion(curve, LIMITS, PERIOD_S, speed, way.straight)
@@ -182,7 +180,7 @@ class WorkcellBody:
     def stop(self) -> None:
         self._braking = self._motion is not None
         self._motion = None
-        self._target = self._pr2.arm_joints()
+        self._target = self.pr2.arm_joints()
         self._gripper.stop()
 
     @property
@@ -207,18 +205,18 @@ class WorkcellBody:
         return self._gripper.progress
 
     def tool_pose(self) -> Matrix4:
-        return self._pr2.tool.pose(self._pr2.arm_joints())
+        return self.pr2.tool.pose(self.pr2.arm_joints())
 
     def gripper_opening_m(self) -> float:
         noise_m = ENCODER_NOISE_M * float(self._sensor_rng.standard_normal())
-        return max(0.0, self._pr2.gripper_opening_m() + noise_m)
+        return max(0.0, self.pr2.gripper_opening_m() + noise_m)
 
     def gripper_effort_n(self) -> float:
         noise_n = FINGER_NOISE_N * float(self._sensor_rng.standard_normal())
-        return max(0.0, self._pr2.gripper_effort_n() + noise_n)
+        return max(0.0, self.pr2.gripper_effort_n() + noise_n)
 
     def finger_hulls(self) -> Sequence[Hull]:
-        return self._pr2.finger_hulls()
+        return self.pr2.finger_hulls()
 
     def contact_force(self) -> NDArray[np.float64]:
         return self._touch.force
@@ -240,6 +238,11 @@ class WorkcellBody:
     def ready_to_take(self) -> bool:
         """Whether the arm rests with the gripper open."""
         return not self.moving and not self._gripper.closing
+
+    @property
+    def stretched_out(self) -> bool:
+        """Whether the arm is, or was last, on its way to take what people hold out."""
+        return self._stretched_out
 
     def ways_ahead(self) -> list[JointCurve]:
         """The rest of the segment under way, the path's segments after it, the way to neutral."""
@@ -268,7 +271,7 @@ class WorkcellBody:
 
     def _is_held_up(self) -> bool:
         """Whether something keeps the arm from following its target."""
-        lag = np.abs(self._target - self._pr2.arm_joints()).max()
+        lag = np.abs(self._target - self.pr2.arm_joints()).max()
         return bool(lag > _MOST_LAG_RAD)
 
 

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mend.robots.arm.motion.kinematics import KinematicChain
 from mend.robots.body import CameraImage, Matrix4
 from mend.robots.vision.viewpoint import Viewpoint
 from mend.sim.depth_noise import DepthNoise, PinholeOptics
 from mend.sim.lighting import Lighting
+from mend.sim.other_robots import blank_around
 from mend.sim.workcell.rendering import CameraOptics, Renderer, Rendering
 from mend.sim.workcell.robot_model import (
     FOREARM_FOV_RAD,
@@ -60,6 +62,18 @@ def forearm_optics(period_s: float) -> Optics:
     return Optics(FOREARM_SIZE, focal_px, near_m=0.02, period_s=period_s, has_depth=False)
 
 
+@dataclass(frozen=True, slots=True)
+class Mount:
+    """Where a camera is: its `pose` in the frame of its robot, which `base` has in the scene's.
+
+    `other_bodies` are the engine's ids of the other robots, and of what they hold.
+    """
+
+    base: Matrix4
+    pose: Callable[[], Matrix4]
+    other_bodies: Callable[[], list[int]]
+
+
 class WorkcellCamera:
     """One camera: renders from where it is now, in the world's light."""
 
@@ -69,7 +83,7 @@ class WorkcellCamera:
         renderer: Renderer,
         lighting: Lighting,
         depth_noise: DepthNoise,
-        pose: Callable[[], Matrix4],
+        mount: Mount,
         time_s: Callable[[], float],
         arrangement: Callable[[], bytes],
     ) -> None:
@@ -78,7 +92,7 @@ class WorkcellCamera:
         self._renderer = renderer
         self._lighting = lighting
         self._depth_noise = depth_noise
-        self._pose = pose
+        self._mount = mount
         self._time_s = time_s
         self._arrangement = arrangement
         self._last: tuple[bytes, CameraImage] | None = None
@@ -89,7 +103,7 @@ class WorkcellCamera:
 
     def pose(self) -> Matrix4:
         """Where it is now: its optical frame in the base frame."""
-        return self._pose()
+        return self._mount.pose()
 
     def capture(self) -> CameraImage:
         """Take a picture now; while neither time passes nor anything moves it is the same one."""
@@ -100,19 +114,24 @@ class WorkcellCamera:
 
     def capture_with_bodies(self) -> tuple[CameraImage, Rendering]:
         """A picture and what it was rendered to, for training and for tests to judge by."""
-        optics = self._optics
-        view = CameraOptics(self.pose(), optics.size, optics.focal_px, optics.near_m)
+        optics, pose = self._optics, self.pose()
+        in_scene = self._mount.base @ pose
+        view = CameraOptics(in_scene, optics.size, optics.focal_px, optics.near_m)
         time_s = self._time_s()
         rendering = self._renderer.render(view, self._lighting.light_at(time_s))
         lens = PinholeOptics(optics.focal_px, view.center_px)
         image = CameraImage(
             bgr=self._lighting.expose(rendering.bgr, time_s),
-            depth_m=self._depth_noise.measure(rendering.depth_m, rendering.bgr, lens)
-            if optics.has_depth
-            else None,
-            pose=view.pose,
+            depth_m=self._measured(rendering, lens) if optics.has_depth else None,
+            pose=pose,
             focal_px=optics.focal_px,
             center_px=view.center_px,
             time=time_s,
         )
         return image, rendering
+
+    def _measured(self, rendering: Rendering, lens: PinholeOptics) -> NDArray[np.float32]:
+        """The depth, with nothing measured where robots are that say where they are."""
+        depth_m = self._depth_noise.measure(rendering.depth_m, rendering.bgr, lens)
+        others = self._mount.other_bodies()
+        return blank_around(depth_m, np.isin(rendering.bodies, others)) if others else depth_m

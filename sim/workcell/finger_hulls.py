@@ -34,12 +34,12 @@ class FingerHulls:
         from_base = np.linalg.inv(KinematicChain(urdf, TOOL_FRAME, ARM_JOINTS).pose(still))
         palm = from_base @ KinematicChain(urdf, _PALM, ARM_JOINTS).pose(still)
         self._from_base = from_base
-        self._palm = _moved(_hull(urdf, _PALM), palm)
+        self._palm = _moved(drawn_hull(urdf, _PALM), palm)
         self._chains = {
             link: KinematicChain(urdf, link, (*ARM_JOINTS, *joints))
             for link, joints in _MOVING.items()
         }
-        self._hulls = {link: _hull(urdf, link) for link in _MOVING}
+        self._hulls = {link: drawn_hull(urdf, link) for link in _MOVING}
 
     def at(self, angles: Mapping[str, float]) -> Sequence[Hull]:
         """All pieces in the tool frame; `angles` are those of the finger joints."""
@@ -54,7 +54,7 @@ class FingerHulls:
         return pieces
 
 
-def _hull(urdf: Path, link: str) -> Hull:
+def drawn_hull(urdf: Path, link: str) -> Hull:
     """The corners of a link's drawn mesh's convex hull, in the link's frame."""
     root = ElementTree.parse(urdf).getroot()
     visual = root.find(f"link[@name='{link}']/visual")

@@ -79,10 +79,10 @@ class Obstacle:
         client.resetBaseVelocity(self._body_id, [0.0] * 3, [0.0] * 3)
         client.changeConstraint(self._hold, center, maxForce=_HOLD_FORCE_N)
 
-    def is_clear_of(self, arm: int, parts: Iterable[int]) -> bool:
-        """Whether there is room between it and the arm, and more to every one of some parts."""
+    def is_clear_of(self, arms: Iterable[int], parts: Iterable[int]) -> bool:
+        """Whether there is room between it and every arm, and more to every one of some parts."""
         near = self._client.getClosestPoints
-        return not near(self._body_id, arm, _CLEAR_OF_ARM_M) and not any(
+        return not any(near(self._body_id, arm, _CLEAR_OF_ARM_M) for arm in arms) and not any(
             near(self._body_id, part, _CLEAR_OF_PARTS_M) for part in parts
         )
 
@@ -92,11 +92,13 @@ def center_above(x: float, y: float, tool_z: float) -> Point:
     return x, y, tool_z + _ABOVE_TOOL_M + _HALF_M[2]
 
 
-def centers_ahead(tool: KinematicChain, ways: Iterable[JointCurve]) -> Iterator[Point]:
-    """Where an obstacle would be met on the way, the nearest first."""
+def centers_ahead(
+    base: Matrix4, tool: KinematicChain, ways: Iterable[JointCurve]
+) -> Iterator[Point]:
+    """Where an obstacle would be met on the way, the nearest first; `base` is the arm's frame."""
     for way in ways:
         for parameter in np.linspace(0.0, way.length, _SAMPLES):
-            x, y, z = tool.pose(way.at(float(parameter)))[:3, 3]
+            x, y, z = (base @ tool.pose(way.at(float(parameter))))[:3, 3]
             yield center_above(float(x), float(y), float(z))
 
 

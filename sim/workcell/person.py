@@ -1,7 +1,7 @@
 """The person beside the table: carries out interventions, some over many cycles."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,9 @@ from mend.robots.arm.grasp import can_grasp, grasp_of
 from mend.robots.catalogue import Part as CataloguePart
 from mend.sim.acts import PULL_M_PER_S, Acts, Impossible
 from mend.sim.workcell.bench import Bench
-from mend.sim.workcell.body import PERIOD_S, WorkcellBody
+from mend.sim.workcell.body import WorkcellBody
+from mend.sim.workcell.clock import PERIOD_S, Clock
+from mend.sim.workcell.gripper import PR2_GRIPPER
 from mend.sim.workcell.hand import HOLD_FORCE_N, PULL_FORCE_N, Hand
 from mend.sim.workcell.obstacle import (
     Obstacle,
@@ -22,7 +24,6 @@ from mend.sim.workcell.obstacle import (
 )
 from mend.sim.workcell.parts import PartPose, RigidPart
 from mend.sim.workcell.physics import LEAST_DISTANCE_M, Client, Point
-from mend.sim.workcell.pr2 import Pr2
 from mend.tasks.footprint import Footprint
 from mend.tasks.scene import Pose
 
@@ -63,23 +64,29 @@ class _Pull:
 
 @dataclass(slots=True)
 class WorkcellHandOver:
-    """A part that somebody holds out, or waits to, until the clock reads `until_s`."""
+    """A part that somebody holds out, or waits to, until the clock reads `until_s`.
+
+    While it is in the `hand`, it is held out to `taker`.
+    """
 
     part: RigidPart
     until_s: float
     hand: Hand | None = None
+    taker: WorkcellBody | None = None
     gripped_cycles: int = 0
 
 
 class WorkcellPerson(Acts[RigidPart, PartPose]):
     """Everybody who is not the robot."""
 
-    def __init__(self, client: Client, bench: Bench, pr2: Pr2, body: WorkcellBody) -> None:
+    def __init__(
+        self, client: Client, bench: Bench, clock: Clock, bodies: Sequence[WorkcellBody]
+    ) -> None:
         super().__init__(bench.scene, bench.parts)
         self._client = client
         self._bench = bench
-        self._pr2 = pr2
-        self._body = body
+        self._clock = clock
+        self._bodies = bodies
         self._pulls: list[_Pull] = []
         self.hand_over: WorkcellHandOver | None = None
         self.obstacle = Obstacle(client)
@@ -113,7 +120,7 @@ class WorkcellPerson(Acts[RigidPart, PartPose]):
 
         Raises `Impossible` for a part that they do not fit.
         """
-        if not can_grasp(_as_catalogued(part), self._body.gripper):
+        if not can_grasp(_as_catalogued(part), PR2_GRIPPER):
             raise Impossible(f"'{part.name}' does not fit between the robot's fingers")
         part.hide()
         self.hand_over = WorkcellHandOver(part, until_s)
@@ -121,13 +128,13 @@ class WorkcellPerson(Acts[RigidPart, PartPose]):
     # --- What a workcell adds -----------------------------------------------------------------
 
     def _now_s(self) -> float:
-        return self._body.time_s()
+        return self._clock.time_s()
 
     def _is_gone(self, part: RigidPart) -> bool:
         return part.stolen or self.is_pulling(part)
 
     def _is_held(self, part: RigidPart) -> bool:
-        return self._bench.held(self._pr2) is part
+        return self._holder_of(part) is not None
 
     def _offered(self) -> RigidPart | None:
         return None if self.hand_over is None else self.hand_over.part
@@ -137,22 +144,25 @@ class WorkcellPerson(Acts[RigidPart, PartPose]):
 
     def _stand_in_the_way(self) -> None:
         parts = [part.body_id for part in self._bench.parts.values()]
+        arms = [body.pr2.body_id for body in self._bodies]
         for center in self._spots_in_the_way():
             self.obstacle.stand_at(center)
-            if self.obstacle.is_clear_of(self._pr2.body_id, parts):
+            if self.obstacle.is_clear_of(arms, parts):
                 return
         self.obstacle.withdraw()
         raise Impossible("there is no room to stand in the arm's way")
 
     def _spots_in_the_way(self) -> Iterator[Point]:
-        """Where the arm will meet somebody, the soonest first: on its task, or going home."""
-        *task, home = self._body.ways_ahead()
-        tool = self._pr2.tool.pose(self._pr2.arm_joints())
-        yield from centers_ahead(self._pr2.tool, task)
-        if sinks(self._pr2.tool, tool, task):
-            x, y, z = (float(each) for each in self._pr2.forearm_camera_pose()[:3, 3])
-            yield from centers_below(self._pr2.wrist(tool), (x, y, z))
-        yield from centers_ahead(self._pr2.tool, [home])
+        """Where an arm will meet somebody, the soonest first: on its task, or going home."""
+        body = self._under_way()
+        pr2, base = body.pr2, body.pr2.base
+        *task, home = body.ways_ahead()
+        tool = pr2.tool_in_scene()
+        yield from centers_ahead(base, pr2.tool, task)
+        if sinks(pr2.tool, tool, task):
+            x, y, z = (float(each) for each in (base @ pr2.forearm_camera_pose())[:3, 3])
+            yield from centers_below(pr2.wrist(tool), (x, y, z))
+        yield from centers_ahead(base, pr2.tool, [home])
         yield self._between_starts_and_places()
 
     def _step_aside(self) -> None:
@@ -165,8 +175,9 @@ class WorkcellPerson(Acts[RigidPart, PartPose]):
             part.take_away()
             return
         hand = Hand.take_hold(self._client, part, PULL_FORCE_N)
-        sideways = self._way_out(part)
-        if self._is_held(part):
+        holder = self._holder_of(part)
+        sideways = self._way_out(part, holder or self._bodies[0])
+        if holder is not None:
             self._pulls.append(_Pull(hand, first=sideways, then=_UP))
         else:
             self._pulls.append(_Pull(hand, first=_UP, then=sideways))
@@ -222,13 +233,28 @@ class WorkcellPerson(Acts[RigidPart, PartPose]):
         other = next(self._bench.intersecting(part), None)
         if other is not None:
             return f"'{other.name}'"
-        if self._client.getClosestPoints(part.body_id, self._pr2.body_id, LEAST_DISTANCE_M):
+        near = self._client.getClosestPoints
+        arms = (body.pr2.body_id for body in self._bodies)
+        if any(near(part.body_id, arm, LEAST_DISTANCE_M) for arm in arms):
             return "the robot's arm"
         return None
 
-    def _way_out(self, part: RigidPart) -> Direction:
+    def _holder_of(self, part: RigidPart) -> WorkcellBody | None:
+        """Whose fingers hold a part."""
+        held = (body for body in self._bodies if self._bench.held(body.pr2) is part)
+        return next(held, None)
+
+    def _under_way(self) -> WorkcellBody:
+        """Whoever carries something, else whoever moves."""
+        if len(self._bodies) == 1:
+            return self._bodies[0]
+        held = [self._bench.held(body.pr2) is not None for body in self._bodies]
+        pairs = zip(held, self._bodies, strict=True)
+        return max(pairs, key=lambda pair: (pair[0], pair[1].moving))[1]
+
+    def _way_out(self, part: RigidPart, body: WorkcellBody) -> Direction:
         """Level, along the fingers' sides, away from the other parts."""
-        tool = self._pr2.tool.pose(self._pr2.arm_joints())
+        tool = body.pr2.tool_in_scene()
         level = np.array([tool[0, 2], tool[1, 2], 0.0])
         if np.linalg.norm(level) < _LEVEL:
             level = np.array([0.0, -1.0, 0.0])
@@ -264,23 +290,33 @@ class WorkcellPerson(Acts[RigidPart, PartPose]):
             pull.hand.part.take_away()
 
     def _go_on_handing_over(self, hand_over: WorkcellHandOver) -> None:
-        if self._body.time_s() >= hand_over.until_s:
+        part, hand, taker = hand_over.part, hand_over.hand, hand_over.taker
+        if self._clock.time_s() >= hand_over.until_s:
             self._end_hand_over(hand_over)
-            hand_over.part.put(hand_over.part.last_rest)
-        elif hand_over.hand is None:
-            if self._body.ready_to_take:
-                hand_over.part.put(self._pose_between_fingers(hand_over.part))
-                hand_over.hand = Hand.take_hold(self._client, hand_over.part, HOLD_FORCE_N)
-        elif self._body.moving and not self._body.gripper_closing:
+            part.put(part.last_rest)
+        elif hand is None or taker is None:
+            self._hold_between_fingers(hand_over)
+        elif taker.moving and not taker.gripper_closing:
             # The robot turned away: try again when it is back.
-            hand_over.hand.let_go()
-            hand_over.hand = None
-            hand_over.part.hide()
+            hand.let_go()
+            hand_over.hand = hand_over.taker = None
+            part.hide()
         else:
-            self._feel_grip(hand_over)
+            self._feel_grip(hand_over, taker)
 
-    def _feel_grip(self, hand_over: WorkcellHandOver) -> None:
-        gripped = all(self._pr2.touched_by(hand_over.part.body_id))
+    def _hold_between_fingers(self, hand_over: WorkcellHandOver) -> None:
+        """Of several robots, between those of the one that stretches its arm out for it."""
+        bodies = self._bodies
+        if len(bodies) > 1:
+            bodies = [each for each in bodies if each.stretched_out]
+        taker = next((each for each in bodies if each.ready_to_take), None)
+        if taker is not None:
+            hand_over.part.put(_pose_between_fingers(hand_over.part, taker))
+            hand_over.hand = Hand.take_hold(self._client, hand_over.part, HOLD_FORCE_N)
+            hand_over.taker = taker
+
+    def _feel_grip(self, hand_over: WorkcellHandOver, taker: WorkcellBody) -> None:
+        gripped = all(taker.pr2.touched_by(hand_over.part.body_id))
         hand_over.gripped_cycles = hand_over.gripped_cycles + 1 if gripped else 0
         if hand_over.gripped_cycles >= _GRIPPED_CYCLES:
             self._end_hand_over(hand_over)
@@ -290,13 +326,14 @@ class WorkcellPerson(Acts[RigidPart, PartPose]):
             hand_over.hand.let_go()
         self.hand_over = None
 
-    def _pose_between_fingers(self, part: RigidPart) -> PartPose:
-        """Upright, with its thin sides to the fingers, grasped where the robot would."""
-        grasp = grasp_of(_as_catalogued(part), self._body.gripper)
-        tool = self._pr2.tool.pose(self._pr2.arm_joints())
-        x, y, z = (float(value) for value in tool[:3, 3])
-        yaw = math.atan2(tool[1, 1], tool[0, 1]) - grasp.yaw
-        return PartPose.upright(x, y, z - grasp.height_m, yaw)
+
+def _pose_between_fingers(part: RigidPart, taker: WorkcellBody) -> PartPose:
+    """Upright, with its thin sides to the fingers, grasped where the robot would."""
+    grasp = grasp_of(_as_catalogued(part), taker.gripper)
+    tool = taker.pr2.tool_in_scene()
+    x, y, z = (float(value) for value in tool[:3, 3])
+    yaw = math.atan2(tool[1, 1], tool[0, 1]) - grasp.yaw
+    return PartPose.upright(x, y, z - grasp.height_m, yaw)
 
 
 def _as_catalogued(part: RigidPart) -> CataloguePart:

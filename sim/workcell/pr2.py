@@ -8,20 +8,21 @@ import numpy as np
 from mend.robots.arm.motion.collision import CollisionModel
 from mend.robots.arm.motion.kinematics import Joints, KinematicChain
 from mend.robots.body import Matrix4
+from mend.sim.base_frame import base_in_scene
 from mend.sim.workcell.arm_dynamics import LinkInertia, Pr2ArmDynamics
 from mend.sim.workcell.finger_hulls import FingerHulls, Hull
 from mend.sim.workcell.gripper import FINGERS_OPEN_RAD, inner_side_m
-from mend.sim.workcell.physics import Client, Point, to_matrix
+from mend.sim.workcell.physics import Client, Point, to_matrix, yaw_quaternion
 from mend.sim.workcell.quiet import silenced
 from mend.sim.workcell.robot_model import (
     ARM_JOINTS,
     FINGER_JOINTS,
     FOREARM_CAMERA_FRAME,
     NEUTRAL_RAD,
-    SHOULDER_FRAME,
     TOOL_FRAME,
     robot_urdf,
 )
+from mend.tasks.frames import Frame
 
 _FOREARM_JOINTS = ARM_JOINTS[:5]
 
@@ -59,14 +60,22 @@ _GRIPPER_COLOR = (0.35, 0.36, 0.38, 1.0)
 
 
 class Pr2:
-    """A PR2 whose right arm and gripper move; everything else of it is fixed."""
+    """A PR2 whose right arm and gripper move; everything else of it is fixed.
 
-    def __init__(self, client: Client) -> None:
+    All poses are in its base frame, which `base` has in the scene's.
+    """
+
+    def __init__(self, client: Client, frame: Frame) -> None:
         self._client = client
+        self.base = base_in_scene(frame)
         urdf = self._urdf = robot_urdf()
         with silenced():
             self.body_id: int = client.loadURDF(
-                str(urdf), useFixedBase=True, flags=client.URDF_MERGE_FIXED_LINKS
+                str(urdf),
+                [frame.x, frame.y, 0.0],
+                yaw_quaternion(frame.yaw),
+                useFixedBase=True,
+                flags=client.URDF_MERGE_FIXED_LINKS,
             )
         link_of = self._links_by_joint()
         self._arm = [link_of[name] for name in ARM_JOINTS]
@@ -78,8 +87,6 @@ class Pr2:
         self.tool = KinematicChain(urdf, TOOL_FRAME, ARM_JOINTS)
         self.collisions = CollisionModel(urdf, ARM_JOINTS, TOOL_FRAME)
         self._forearm_camera = KinematicChain(urdf, FOREARM_CAMERA_FRAME, _FOREARM_JOINTS)
-        shoulder = KinematicChain(urdf, SHOULDER_FRAME, ARM_JOINTS[:1]).pose(np.zeros(1))
-        self.shoulder = (float(shoulder[0, 3]), float(shoulder[1, 3]))
         self._hulls = FingerHulls(urdf)
         self._set_up_dynamics(link_of)
         self._paint(link_of)
@@ -171,8 +178,12 @@ class Pr2:
         """The forearm camera's optical frame, from the measured joint angles."""
         return self._forearm_camera.pose(self.arm_joints()[: len(_FOREARM_JOINTS)])
 
+    def tool_in_scene(self) -> Matrix4:
+        """The tool point's pose in the scene's frame, from the measured joint angles."""
+        return np.asarray(self.base @ self.tool.pose(self._arm_angles))
+
     def wrist(self, tool: Matrix4) -> Point:
-        """Where the wrist is behind a tool pose."""
+        """Where the wrist is behind a tool pose, in the same frame."""
         x, y, z = (float(each) for each in tool[:3, 3] - _WRIST_TO_TOOL_M * tool[:3, 0])
         return x, y, z
 

@@ -35,16 +35,19 @@ class PartSnapshot(StrictModel):
 class WorkcellSnapshot(StrictModel):
     """The state of a workcell between two control cycles.
 
-    `held` is for readers of the journal: a rebuilt robot holds nothing. `obstacle` is the middle
-    of what somebody holds in the arm's way; `generator` the state of the world's random
-    numbers, as JSON text because its integers are longer than 64 bits.
+    `held` is for readers of the journal (`also_held` what other robots hold): a rebuilt robot holds
+    nothing. `obstacle` is the middle of what somebody holds in the arm's way; `generator` the state
+    of the first robot's random numbers (`other_generators` of the others', in the scene's order),
+    as JSON text because its integers are longer than 64 bits.
     """
 
     version: Literal[1] = 1
     cycle: int
     parts: dict[Name, PartSnapshot]
     held: Name | None
+    also_held: list[Name] = []
     obstacle: Triple | None
     hand_over: HandOverSnapshot | None
     generator: str
+    other_generators: list[str] = []
     head_covered: bool = False

@@ -1,8 +1,9 @@
-"""Making workcells: the world with its robot, and what that can do in a scene."""
+"""Making workcells: the world with its robots, and what they can do in a scene."""
 
 from collections.abc import Sequence
 
-from mend.robots.arm.feasibility.check import check_scene
+from mend.robots.arm.body import Reach
+from mend.robots.arm.feasibility.robots import ArmKind, check_for_each_robot
 from mend.robots.arm.subsystem import ArmSubsystem
 from mend.robots.catalogue import Catalogue
 from mend.robots.robot import Robot
@@ -14,50 +15,55 @@ from mend.sim.workcell.arm_planner import neutral_arm
 from mend.sim.workcell.cameras import head_viewpoint
 from mend.sim.workcell.colors import learn_colors
 from mend.sim.workcell.options import WorkcellOptions
+from mend.sim.workcell.reach import ARM_ROOM, pr2_reach
 from mend.sim.workcell.world import WorkcellWorld
 from mend.sim.world import WorldSetup
 from mend.sim.world_options import read_options
 from mend.tasks.definition import BehaviorNode, GoalNode
-from mend.tasks.frames import Frame, frames_of
+from mend.tasks.frames import frames_of
 from mend.tasks.plugins import load_plugins
 from mend.tasks.scene import Scene
 from mend.tasks.scene_problem import SceneProblem
-
-ONE_ROBOT = (
-    "the workcell has one robot, at (0, 0): leave out 'robots', or run the task in the tabletop"
-)
 
 
 class Workcells:
     """Makes workcells; what `WorkcellAdapter` hands on."""
 
+    def reach(self, scene: Scene) -> Reach:  # noqa: ARG002
+        """How far each robot reaches."""
+        return pr2_reach()
+
     def create_agents(self, setup: WorldSetup) -> SharedWorld:
-        """Build the world and the robot in it.
+        """Build the world and the robots in it.
 
         Raises `WorldUnavailableError`, `WrongInputError` for options and `ValueError` for a
         snapshot that do not fit.
         """
         options = read_options(WorkcellOptions, "workcell", setup.options)
         world = WorkcellWorld(setup.scene, setup.seed, options)
-        (name,) = setup.robots
-        robot = Robot(
-            name,
-            world.body,
-            [
-                ArmSubsystem(
-                    world.body,
-                    learn_colors(setup.scene, options.camera_noise),
-                    Catalogue.from_scene(setup.scene),
-                    load_plugins("mend.behaviors"),
-                    load_plugins("mend.monitors"),
-                    # As fast as possible, nobody watches: a picture for no monitor costs only time.
-                    films=setup.speed is not None,
-                )
-            ],
-        )
+        colors = learn_colors(setup.scene, options.camera_noise)
+        frames = frames_of(setup.scene).values()
+        robots = [
+            Robot(
+                name,
+                body,
+                [
+                    ArmSubsystem(
+                        body,
+                        colors,
+                        Catalogue.from_scene(frame.scene_to_robot(setup.scene)),
+                        load_plugins("mend.behaviors"),
+                        load_plugins("mend.monitors"),
+                        # As fast as possible, nobody watches: what no monitor needs costs time.
+                        films=setup.speed is not None,
+                    )
+                ],
+            )
+            for name, frame, body in zip(setup.robots, frames, world.bodies, strict=True)
+        ]
         return SharedWorld(
             world,
-            [robot],
+            robots,
             speed=setup.speed,
             interventions=setup.interventions,
             snapshot=setup.snapshot,
@@ -66,13 +72,14 @@ class Workcells:
     def check_scene(
         self, scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]
     ) -> list[SceneProblem]:
-        """What keeps the robot from doing the leaves among `nodes` in a scene."""
-        if list(frames_of(scene).values()) != [Frame()]:
-            return [SceneProblem(("robots",), ONE_ROBOT)]
+        """What keeps all robots from doing the leaves among `nodes` in a scene."""
         if beyond := not_for_arms(scene, nodes):
             return beyond
         lookalikes = find_lookalikes(scene, nodes, learn_colors(scene))
-        return [*check_scene(scene, nodes, neutral_arm(), head_viewpoint()), *lookalikes]
+        kind = ArmKind(
+            pr2_reach(), lambda _: neutral_arm(), lambda _: head_viewpoint(), lambda _: ARM_ROOM
+        )
+        return [*check_for_each_robot(scene, nodes, kind), *lookalikes]
 
     def train_colors(self, scene: Scene) -> ColorModel:
         """Learn the colours of a scene's objects from rendered pictures of them."""

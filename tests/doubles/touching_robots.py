@@ -1,16 +1,24 @@
-"""Robots of a tabletop world that touch each other: looked for in every control cycle."""
+"""Robots of one world that touch each other: looked for in every control cycle."""
 
 import math
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from itertools import combinations
+from importlib.util import find_spec
+from itertools import combinations, product
+from typing import TYPE_CHECKING
 from unittest.mock import patch
 
 from mend.sim.tabletop.gripper_shape import FINGER, PALM, finger_offset_m
 from mend.sim.tabletop.manipulator import Manipulator
 from mend.sim.tabletop.state import TabletopState
 from mend.tasks.footprint import Footprint
+
+if TYPE_CHECKING:
+    from mend.sim.workcell.world import WorkcellWorld
+
+_LEAST_M = 1e-6
+"""Within 0 the engine overlooks some that touch."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +55,20 @@ def bodies_of(robot: Manipulator) -> list[Body]:
 
 @contextmanager
 def touching_robots() -> Iterator[list[str]]:
-    """A sentence for each cycle in which two robots, or what they hold, are in one place."""
+    """A sentence for each cycle in which two robots, or what they hold, are in one place.
+
+    Workcells are looked into, and therefore simulated, in this process.
+    """
     touched: list[str] = []
+    with ExitStack() as watching:
+        watching.enter_context(_watched_tabletops(touched))
+        if find_spec("pybullet") is not None:
+            watching.enter_context(_watched_workcells(touched))
+        yield touched
+
+
+@contextmanager
+def _watched_tabletops(touched: list[str]) -> Iterator[None]:
     advance = TabletopState.advance_cycle
 
     def watched(state: TabletopState) -> None:
@@ -58,4 +78,35 @@ def touching_robots() -> Iterator[list[str]]:
                 touched.append(f"two robots touch at {state.time_s:.1f} s")
 
     with patch.object(TabletopState, "advance_cycle", watched):
-        yield touched
+        yield
+
+
+@contextmanager
+def _watched_workcells(touched: list[str]) -> Iterator[None]:
+    from mend.sim.workcell.adapter import WorkcellAdapter
+    from mend.sim.workcell.world import WorkcellWorld
+
+    advance = WorkcellWorld.advance_cycle
+
+    def watched(world: WorkcellWorld) -> None:
+        advance(world)
+        if arms_touch(world):
+            touched.append(f"two robots touch at {world.time_s():.3f} s")
+
+    with (
+        patch.object(WorkcellWorld, "advance_cycle", watched),
+        patch.object(WorkcellAdapter, "own_process", False),
+    ):
+        yield
+
+
+def arms_touch(world: "WorkcellWorld") -> bool:
+    """Whether two PR2s, or what they hold, are in one place now."""
+    near = world._client.getClosestPoints
+    arms = []
+    for body in world.bodies:
+        held = world.held_by(body)
+        arms.append([body.pr2.body_id] if held is None else [body.pr2.body_id, held.body_id])
+    return any(
+        near(one, two, _LEAST_M) for a, b in combinations(arms, 2) for one, two in product(a, b)
+    )

@@ -10,8 +10,10 @@ import numpy.typing as npt
 from mend.robots.arm.body import ArmPath, ToolPose
 from mend.robots.arm.grasp import RELEASE_CLEARANCE_M, grasp_of, half_turn
 from mend.robots.catalogue import Part
+from mend.sim.base_frame import tool_in_base
 from mend.sim.workcell.parts import PartPose
 from mend.sim.workcell.world import WorkcellWorld
+from mend.tasks.frames import Frame
 from mend.tasks.intervention import Act, Intervention
 
 TABLE_M = 0.70
@@ -26,11 +28,12 @@ def do(world: WorkcellWorld, act: Act, name: str | None = None, **more: object) 
 
 
 class Hands:
-    """Picks and places parts where they really are."""
+    """Picks and places parts where they really are; `frame` is where the robot stands."""
 
-    def __init__(self, world: WorkcellWorld) -> None:
+    def __init__(self, world: WorkcellWorld, number: int = 0, frame: Frame | None = None) -> None:
         self.world = world
-        self.body = world.body
+        self.body = world.bodies[number]
+        self.frame = frame or Frame()
 
     def wait(self, duration_s: float) -> None:
         end_s = self.body.time_s() + duration_s
@@ -93,7 +96,8 @@ class Hands:
         definition = self.world.parts[name].definition
         grasp = grasp_of(Part(name, definition.size, definition.knob), self.body.gripper)
         x, y, z = pose.position
-        return grasp.tool_pose(x, y, z + clearance_m, pose.yaw)
+        in_scene = grasp.tool_pose(x, y, z + clearance_m, pose.yaw)
+        return tool_in_base(self.frame, in_scene)
 
 
 def above(pose: ToolPose) -> ToolPose:

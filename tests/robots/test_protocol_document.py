@@ -25,6 +25,7 @@ PARTS: dict[str, type[BaseModel]] = {
     "finished_result": m.FinishedResult,
     "sighting": m.Sighting,
     "room": m.RoomLimits,
+    "swing": m.SwingLimits,
     "clip_picture": m.ClipPicture,
     "shows": m.PoseLayout,
     "shown": m.ShownObject,

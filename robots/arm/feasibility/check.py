@@ -1,6 +1,7 @@
 """The check of a whole scene: each part by itself, and what gets in each other's way."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 
 from mend.robots.arm.behaviors.planning import Planner
@@ -36,10 +37,38 @@ def check_scene(
     taken away before a part does not count. Each part is told of once. Trees of more than
     `MOST_COMPARED_LEAVES` leaves are not checked.
     """
+    return check_for_robots(scene, nodes, [CheckedRobot(scene, planner, head)], _everybody)
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedRobot:
+    """A robot that may do it: the scene as it has it, its planner and its head camera."""
+
+    scene: Scene
+    planner: Planner
+    head: Viewpoint
+
+
+Asked = Callable[[str, str | None], Sequence[int]]
+"""Which of the robots are asked, by their numbers, about an object and its place, one by one until
+one of them can do it."""
+
+
+def check_for_robots(
+    scene: Scene,
+    nodes: Sequence[GoalNode | BehaviorNode],
+    robots: Sequence[CheckedRobot],
+    asked: Asked,
+) -> list[SceneProblem]:
+    """As `check_scene`, for robots of one kind: what one of them can do is no problem."""
     distinct = distinct_alternatives(nodes).nodes
     if sum(node.kind == "behavior" for node in distinct) > MOST_COMPARED_LEAVES:
         return []
-    return _SceneCheck(scene, distinct, planner, head).problems()
+    return _SceneCheck(scene, distinct, robots, asked).problems()
+
+
+def _everybody(_object: str, _place: str | None) -> Sequence[int]:
+    return (0,)
 
 
 class _SceneCheck:
@@ -47,20 +76,17 @@ class _SceneCheck:
         self,
         scene: Scene,
         nodes: Sequence[GoalNode | BehaviorNode],
-        planner: Planner,
-        head: Viewpoint,
+        robots: Sequence[CheckedRobot],
+        asked: Asked,
     ) -> None:
         self._scene = scene
-        self._head = head
-        self._gripper = planner.gripper
-        self._arm = ArmCheck(planner, scene.scatter, scene.table)
+        self._asked = asked
+        self._gripper = robots[0].planner.gripper
         self._order = LeafOrder(nodes)
         self._starts = starts(scene)
         self._jobs = _jobs(scene, self._order, self._starts)
         self._together = bool(nodes)
-        self._moments = Moments(
-            self._jobs, list(self._starts.values()), self._order, together=self._together
-        )
+        self._robots = [_RobotCheck(each, self._order, self._together) for each in robots]
 
     def problems(self) -> list[SceneProblem]:
         """The plain mistakes first; what follows from one is not told as well."""
@@ -136,34 +162,72 @@ class _SceneCheck:
         if not self._together:
             return self._in_no_order(jobs)
         moved = {each.name for each in self._jobs}
-        found = [self._problem(job, self._moments, moved) for job in jobs]
+        found = [self._problem(job, None, moved) for job in jobs]
         return [each for each in found if each is not None]
 
     def _in_no_order(self, jobs: Sequence[Job]) -> list[SceneProblem]:
         """What is wrong with the parts that cannot be taken, whatever was taken away before."""
-        left, waiting = list(self._jobs), list(jobs)
+        left, waiting = list(range(len(self._jobs))), list(jobs)
         while True:
             stuck = {}
             for job in waiting:
-                starts = [each.start for each in left]
-                moments = Moments(left, starts, self._order, together=False)
-                problem = self._problem(job, moments, moved=set())
+                problem = self._problem(job, left, moved=set())
                 if problem is None:
-                    left.remove(job)
+                    left.remove(self._jobs.index(job))
                 else:
                     stuck[job] = problem
             if len(stuck) == len(waiting):
                 return list(stuck.values())
             waiting = list(stuck)
 
+    def _problem(
+        self, job: Job, left: Sequence[int] | None, moved: set[str]
+    ) -> SceneProblem | None:
+        """What keeps the first robot that is asked from a job, where no other can do it either."""
+        number = self._jobs.index(job)
+        place = None if job.place is None else job.place.where[1]
+        first: SceneProblem | None = None
+        for robot in self._asked(job.name, place):
+            problem = self._robots[robot].problem(number, left, moved)
+            if problem is None:
+                return None
+            first = first or problem
+        return first
+
+
+class _RobotCheck:
+    """What one robot can do, all of it in its base frame."""
+
+    def __init__(self, robot: CheckedRobot, order: LeafOrder, together: bool) -> None:
+        scene = robot.scene
+        self._head = robot.head
+        self._scatter = scene.scatter
+        self._arm = ArmCheck(robot.planner, scene.scatter, scene.table)
+        self._order = order
+        begin = starts(scene)
+        self._jobs = _jobs(scene, order, begin)
+        self._moments = Moments(self._jobs, list(begin.values()), order, together=together)
+
+    def problem(
+        self, number: int, left: Sequence[int] | None, moved: set[str]
+    ) -> SceneProblem | None:
+        """What keeps it from a job; `moved` are the parts that leaves take away.
+
+        With `left` only the starts of these jobs are still there, and there is no order.
+        """
+        if left is None:
+            return self._problem(self._jobs[number], self._moments, moved)
+        jobs = [self._jobs[each] for each in left]
+        moments = Moments(jobs, [each.start for each in jobs], self._order, together=False)
+        return self._problem(self._jobs[number], moments, moved)
+
     def _problem(self, job: Job, moments: Moments, moved: set[str]) -> SceneProblem | None:
-        """What keeps the robot from a job; `moved` are the parts that leaves take away."""
         sure, _ = moments.around(moments.of(job))
         if (problem := hidden(job.start, sure, self._head.eye, moved)) is not None:
             return problem
         if (hindrance := self._hindrance(job, moments)) is not None:
             return self._arm.told(hindrance, moved)
-        return out_of_picture(job, self._head, self._scene.scatter)
+        return out_of_picture(job, self._head, self._scatter)
 
     def _hindrance(self, job: Job, moments: Moments) -> Hindrance | None:
         """What keeps the arm from a job at a moment that the order allows; None if nothing does."""

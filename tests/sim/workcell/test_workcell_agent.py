@@ -22,7 +22,7 @@ from mend.robots.link.messages import (
 )
 from mend.sim.shared_world import SharedWorld
 from mend.sim.workcell.adapter import adapter
-from mend.sim.workcell.body import PERIOD_S
+from mend.sim.workcell.clock import PERIOD_S
 from mend.sim.workcell.parts import PartPose
 from mend.sim.workcell.world import WorkcellWorld
 from mend.sim.world import SceneChecker, WorldSetup

@@ -45,7 +45,7 @@ def test_what_is_held_lies_where_it_last_rested_and_the_arm_is_at_neutral(
     other = rebuild(hands.world, scene)
     assert other.held is None
     assert distance_m(other.parts["bar"].pose(), start) < 0.001
-    joints = other.body._pr2.arm_joints()
+    joints = other.body.pr2.arm_joints()
     assert np.allclose(joints, NEUTRAL_RAD, atol=2e-3)
     Hands(other).pick("bar")
     assert other.held == "bar"

@@ -12,7 +12,7 @@ FREE_N = 5.0
 
 def push(hands: Hands, force: np.ndarray, cycles: int) -> list[np.ndarray]:
     """What it feels while a force (N) pushes at the gripper."""
-    client, pr2 = hands.world._client, hands.world._pr2
+    client, pr2 = hands.world._client, hands.body.pr2
     felt = []
     for _ in range(cycles):
         at = hands.body.tool_pose()[:3, 3]
