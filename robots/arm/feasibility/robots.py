@@ -177,6 +177,7 @@ def _asked(members: Sequence[_Member], ways: _Ways, name: str, place: str | None
     """Those in whose rings a leaf's object and its place are, the nearest first; else the nearest.
 
     Nobody, where a leaf before has moved the object: where it stands then the check does not know.
+    Without leaves nobody either where one robot may pass a part on to another.
     """
     way = ways.of(name, place)
     ends = _in_scene(ways.scene, name, place) if way is None else way.ends
@@ -184,6 +185,7 @@ def _asked(members: Sequence[_Member], ways: _Ways, name: str, place: str | None
         range(len(members)), key=lambda number: max(members[number].away_m(*e) for e in ends)
     )
     able = [number for number in near if members[number].reaches(ends)]
-    if able and way is not None and way.again:
-        return able[:0]
+    passed_on = way is None and all(any(each.reaches([end]) for each in members) for end in ends)
+    if (able and way is not None and way.again) or (not able and passed_on):
+        return ()
     return able or near[:1]
