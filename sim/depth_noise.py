@@ -60,7 +60,8 @@ class DepthNoise:
         measured = self._rng.standard_normal(depth_m.shape, dtype=np.float32)
         lens = np.array([optics.focal_px, *optics.center_px])
         _fuse_smooth(depth_m, _slope(depth_m), lens, self._scale, self._exposures, measured)
-        rows, columns = np.nonzero(edges)
+        # As they were compiled for: what NumPy gives lies strided.
+        rows, columns = (np.ascontiguousarray(each) for each in np.nonzero(edges))
         noise = self._rng.standard_normal((len(rows), 3, self._exposures), dtype=np.float32)
         _fuse_edges(depth_m, rows, columns, self._scale, noise, measured)
         measured[self._lost(bgr, edges)] = np.nan
