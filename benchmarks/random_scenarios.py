@@ -392,7 +392,7 @@ def main() -> int:
     parser.add_argument("--runs", type=int, help="how many (1,000 in tabletop, 50 in workcell)")
     parser.add_argument("--world", choices=sorted(MOST_LEAVES), default="tabletop")
     parser.add_argument("--seed", type=int, default=0, help="the first run's seed")
-    parser.add_argument("--robots", type=int, choices=(1, 2, 3), default=1, help="in tabletop")
+    parser.add_argument("--robots", type=int, choices=(1, 2, 3), default=1)
     parser.add_argument("--person", action="store_true", help="somebody does leaves themselves")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--quick", action="store_true", help="a few runs, as a smoke test")

@@ -52,13 +52,15 @@ class ArmRoom:
     All of it is within `around_m` of the convex hull of `resting` (the corners of what it covers at
     rest) and of where its tool is to go; `hand_over`: where it takes what people hold out. With
     `swing` the hull is also that of the arcs about its pivot between any two places of the tool,
-    each with the radius of the farther one.
+    each with the radius of the farther one. `torso`: the corners of what of the robot is always
+    there beside its arm.
     """
 
     resting: Sequence[tuple[float, float]]
     hand_over: tuple[float, float]
     around_m: float
     swing: Swing | None = None
+    torso: Sequence[tuple[float, float]] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

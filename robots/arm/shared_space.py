@@ -43,6 +43,9 @@ class Room(Protocol):
     @property
     def swing(self) -> Swings | None: ...
 
+    @property
+    def torso(self) -> Sequence[Flat]: ...
+
 
 def home_points(frame: Frame, room: Room) -> list[Flat]:
     """The corners of what an arm covers at rest."""
@@ -51,7 +54,7 @@ def home_points(frame: Frame, room: Room) -> list[Flat]:
 
 def home(frame: Frame, room: Room) -> BaseGeometry:
     """Where an arm is that rests."""
-    return MultiPoint(home_points(frame, room)).convex_hull.buffer(room.around_m)
+    return _space(frame, room, home_points(frame, room), room.around_m)
 
 
 def leaf_space(
@@ -74,7 +77,15 @@ def leaf_space(
         tools.append(frame.to_scene(*room.swing.tool))
         for one, two in combinations(tools, 2):
             corners += _arc(pivot, one, two)
-    return MultiPoint(corners).convex_hull.buffer(around_m)
+    return _space(frame, room, corners, around_m)
+
+
+def _space(frame: Frame, room: Room, corners: Sequence[Flat], around_m: float) -> BaseGeometry:
+    """What an arm takes around such corners, and what of its robot is always there."""
+    space = MultiPoint(corners).convex_hull.buffer(around_m)
+    if not room.torso:
+        return space
+    return space.union(MultiPoint([frame.to_scene(*each) for each in room.torso]).convex_hull)
 
 
 def _arc(pivot: Flat, one: Flat, two: Flat) -> list[Flat]:

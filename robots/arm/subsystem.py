@@ -92,6 +92,7 @@ class ArmSubsystem:
             hand_over=room.hand_over,
             around_m=room.around_m,
             swing=None if swing is None else SwingLimits(pivot=swing.pivot, tool=swing.tool),
+            torso=list(room.torso),
         )
 
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> ArmExecution:

@@ -108,12 +108,14 @@ class RoomLimits(Message):
     All of it is within `around_m` of the convex hull of `resting` (the corners of what it covers at
     rest) and of where its tool is to go; `hand_over`: where it takes what people hold out. With
     `swing` the hull is also that of the arcs about its pivot between any two places of the tool.
+    `torso`: the corners of what of the robot is always there beside its arm.
     """
 
     resting: Annotated[list[tuple[Coordinate, Coordinate]], Field(min_length=1, max_length=16)]
     hand_over: tuple[Coordinate, Coordinate]
     around_m: Annotated[Coordinate, Field(ge=0)]
     swing: SwingLimits | None = None
+    torso: Annotated[list[tuple[Coordinate, Coordinate]], Field(max_length=16)] = []
 
 
 class Detection(Message):

@@ -19,6 +19,7 @@ ARM_ROOM = ArmRoom(
     (HAND_OVER_POSE.x, HAND_OVER_POSE.y),
     around_m=0.16,
     swing=Swing(pivot=(-0.05, -0.188), tool=(0.226, -0.556)),
+    torso=[(-0.34, -0.26), (0.06, -0.26), (0.06, 0.26), (-0.34, 0.26)],
 )
 """Measured, with all drawn corners of the arm, over 650 plans between drawn spots among up to seven
 boxes of up to 250 mm: none was farther than 0.15 m from the hull."""

@@ -35,6 +35,16 @@ def test_an_arm_that_turns_about_its_shoulder_takes_the_arc_between_two_ends() -
     assert leaf_space(FRAME, SWINGING, ends, None).covers(aside)
 
 
+def test_what_of_a_robot_never_moves_is_its_own_space_too() -> None:
+    torso = [(-0.3, -0.2), (0.1, -0.2), (0.1, 0.2), (-0.3, 0.2)]
+    broad = ArmRoom([(0.0, -0.5)], (0.5, 0.0), 0.1, torso=torso)
+    chest, aside = Point(0.95, -0.15), Point(0.7, -0.2)
+    for space in (home(FRAME, broad), leaf_space(FRAME, broad, [(0.4, 0.4)], None)):
+        assert space.covers(chest)
+        assert not space.covers(aside)
+    assert not home(FRAME, ROOM).covers(chest)
+
+
 def test_people_hold_a_part_out_within_the_space_of_its_leaf() -> None:
     there = Point(0.5, 0.0)
     ends = [(1.0, 0.6)]
