@@ -42,6 +42,22 @@ class PinholeOptics:
     center_px: tuple[float, float]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Measurable:
+    """What can be measured of one rendered picture, before any noise is drawn.
+
+    `sigma_m` (h, w): the noise of smooth surfaces, NaN where none is measured. `rows` and `columns`
+    are those of edges; `lost` the rows and columns of what may be lost, and how likely each is.
+    """
+
+    depth_m: Depth
+    bgr: NDArray[np.uint8]
+    sigma_m: Depth
+    rows: NDArray[np.intp]
+    columns: NDArray[np.intp]
+    lost: tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]
+
+
 class DepthNoise:
     """The depth noise of one camera, by seed; `scale` 0 is none, 1 as published."""
 
@@ -49,35 +65,51 @@ class DepthNoise:
         self._scale = scale
         self._rng = rng
         self._exposures = exposures
+        self._known: _Measurable | None = None
         if scale > 0.0:
             _warm_up()
 
     def measure(self, depth_m: Depth, bgr: NDArray[np.uint8], optics: PinholeOptics) -> Depth:
-        """What the camera gives for a rendered picture: NaN where no depth is measured."""
+        """What the camera gives for a rendered picture: NaN where no depth is measured.
+
+        A picture that comes again is taken for the same one only if it is the same array.
+        """
         if self._scale == 0.0:
             return depth_m
-        edges = _edges(depth_m)
+        known = self._known
+        if known is None or known.depth_m is not depth_m or known.bgr is not bgr:
+            known = self._known = self._measurable(depth_m, bgr, optics)
         measured = self._rng.standard_normal(depth_m.shape, dtype=np.float32)
-        lens = np.array([optics.focal_px, *optics.center_px])
-        _fuse_smooth(depth_m, _slope(depth_m), lens, self._scale, self._exposures, measured)
-        # As they were compiled for: what NumPy gives lies strided.
-        rows, columns = (np.ascontiguousarray(each) for each in np.nonzero(edges))
-        noise = self._rng.standard_normal((len(rows), 3, self._exposures), dtype=np.float32)
-        _fuse_edges(depth_m, rows, columns, self._scale, noise, measured)
-        measured[self._lost(bgr, edges)] = np.nan
+        measured *= known.sigma_m
+        measured += depth_m
+        noise = self._rng.standard_normal((len(known.rows), 3, self._exposures), dtype=np.float32)
+        _fuse_edges(depth_m, known.rows, known.columns, self._scale, noise, measured)
+        rows, columns, chance = known.lost
+        lost = self._rng.random(len(rows)) < chance
+        measured[rows[lost], columns[lost]] = np.nan
         return measured
 
-    def _lost(
-        self, bgr: NDArray[np.uint8], edges: NDArray[np.bool_]
-    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """The rows and columns of what is lost on dark things and at edges."""
-        blue, green, red = cv2.split(bgr)
-        brightest = np.asarray(cv2.max(cv2.max(blue, green), red))
-        rows, columns = np.nonzero((brightest < _BRIGHT) | edges)
-        dark = (_BRIGHT - brightest[rows, columns]) / (_BRIGHT - _BLACK)
-        at_edge = np.where(edges[rows, columns], _LOST_AT_EDGES * min(self._scale, 1.0), 0.0)
-        lost = self._rng.random(len(rows)) < np.maximum(dark, at_edge)
-        return rows[lost], columns[lost]
+    def _measurable(
+        self, depth_m: Depth, bgr: NDArray[np.uint8], optics: PinholeOptics
+    ) -> _Measurable:
+        edges, sigma_m = _edges(depth_m), np.empty_like(depth_m)
+        lens = np.array([optics.focal_px, *optics.center_px])
+        _find_sigma(depth_m, _slope(depth_m), lens, self._scale, self._exposures, sigma_m)
+        # As they were compiled for: what NumPy gives lies strided.
+        rows, columns = (np.ascontiguousarray(each) for each in np.nonzero(edges))
+        lost = _lost(bgr, edges, _LOST_AT_EDGES * min(self._scale, 1.0))
+        return _Measurable(depth_m, bgr, sigma_m, rows, columns, lost)
+
+
+def _lost(
+    bgr: NDArray[np.uint8], edges: NDArray[np.bool_], at_edges: float
+) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]:
+    """The rows and columns of what may be lost, on dark things and at edges, and how likely."""
+    blue, green, red = cv2.split(bgr)
+    brightest = np.asarray(cv2.max(cv2.max(blue, green), red))
+    rows, columns = np.nonzero((brightest < _BRIGHT) | edges)
+    dark = (_BRIGHT - brightest[rows, columns]) / (_BRIGHT - _BLACK)
+    return rows, columns, np.maximum(dark, np.where(edges[rows, columns], at_edges, 0.0))
 
 
 def _slope(depth_m: Depth) -> Depth:
@@ -123,8 +155,8 @@ def _incidence_rad(depth_m, right, down, across_px, below_px, focal_px):  # type
 
 
 @_measuring
-def _fuse_smooth(depth_m, slope, lens, scale, exposures, measured):  # type: ignore[no-untyped-def]
-    """Turn standard noise into the mean of all exposures; NaN where it is too steep, near or far.
+def _find_sigma(depth_m, slope, lens, scale, exposures, sigma_m):  # type: ignore[no-untyped-def]
+    """The noise of the mean of all exposures; NaN where it is too steep, near or far.
 
     On a smooth surface a lateral error reads the depth of a point beside.
     """
@@ -134,12 +166,12 @@ def _fuse_smooth(depth_m, slope, lens, scale, exposures, measured):  # type: ign
         for column in range(columns):
             depth, (right, down) = depth_m[row, column], slope[row, column]
             angle = _incidence_rad(depth, right, down, column - center_u, row - center_v, focal_px)
-            beside_m = math.sqrt(right**2 + down**2) * _lateral_sigma_px(angle)
-            sigma_m = math.sqrt((_axial_sigma_m(depth, angle) ** 2 + beside_m**2) / exposures)
             if angle > _STEEPEST_RAD or depth < _NEAREST_M or depth > _FARTHEST_M:
-                measured[row, column] = np.nan
-            else:
-                measured[row, column] = depth + scale * sigma_m * measured[row, column]
+                sigma_m[row, column] = np.nan
+                continue
+            beside_m = math.sqrt(right**2 + down**2) * _lateral_sigma_px(angle)
+            squared = (_axial_sigma_m(depth, angle) ** 2 + beside_m**2) / exposures
+            sigma_m[row, column] = scale * math.sqrt(squared)
 
 
 @_measuring
@@ -187,5 +219,5 @@ def _warm_up() -> None:
     """Compiling amid a run would stop a robot for seconds."""
     depth_m, slope = np.ones((2, 2), np.float32), np.zeros((2, 2, 2), np.float32)
     noise, spot = np.zeros((1, 3, EXPOSURES), np.float32), np.zeros(1, np.intp)
-    _fuse_smooth(depth_m, slope, np.ones(3), 1.0, EXPOSURES, depth_m.copy())
+    _find_sigma(depth_m, slope, np.ones(3), 1.0, EXPOSURES, depth_m.copy())
     _fuse_edges(depth_m, spot, spot, 1.0, noise, depth_m.copy())

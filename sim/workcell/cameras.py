@@ -14,6 +14,7 @@ from mend.robots.vision.viewpoint import Viewpoint
 from mend.sim.depth_noise import DepthNoise, PinholeOptics
 from mend.sim.lighting import Lighting
 from mend.sim.other_robots import blank_around
+from mend.sim.raster import Light
 from mend.sim.workcell.rendering import CameraOptics, Renderer, Rendering
 from mend.sim.workcell.robot_model import (
     FOREARM_FOV_RAD,
@@ -24,6 +25,12 @@ from mend.sim.workcell.robot_model import (
 
 HEAD_SIZE = (640, 480)
 FOREARM_SIZE = (160, 120)
+
+_STILL = 1e-5
+"""Metres, or radians, that no camera here sees: a hundredth of a pixel.
+
+Joints that are held tremble by a tenth of it.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +81,23 @@ class Mount:
     other_bodies: Callable[[], list[int]]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Drawn:
+    """What was drawn last, and of what."""
+
+    arrangement: NDArray[np.float64]
+    light: Light
+    rendering: Rendering
+
+    def is_still(self, arrangement: NDArray[np.float64], light: Light) -> bool:
+        """Whether nothing has moved since by as much as can be seen."""
+        return (
+            self.light == light
+            and self.arrangement.shape == arrangement.shape
+            and bool(np.abs(self.arrangement - arrangement).max(initial=0.0) < _STILL)
+        )
+
+
 class WorkcellCamera:
     """One camera: renders from where it is now, in the world's light."""
 
@@ -85,7 +109,7 @@ class WorkcellCamera:
         depth_noise: DepthNoise,
         mount: Mount,
         time_s: Callable[[], float],
-        arrangement: Callable[[], bytes],
+        arrangement: Callable[[], NDArray[np.float64]],
     ) -> None:
         """`arrangement` tells where everything is: it differs once anything has moved."""
         self._optics = optics
@@ -95,7 +119,8 @@ class WorkcellCamera:
         self._mount = mount
         self._time_s = time_s
         self._arrangement = arrangement
-        self._last: tuple[bytes, CameraImage] | None = None
+        self._last: tuple[NDArray[np.float64], CameraImage] | None = None
+        self._drawn: _Drawn | None = None
 
     @property
     def period_s(self) -> float:
@@ -108,17 +133,20 @@ class WorkcellCamera:
     def capture(self) -> CameraImage:
         """Take a picture now; while neither time passes nor anything moves it is the same one."""
         now = self._arrangement()
-        if self._last is None or self._last[0] != now or self._last[1].time != self._time_s():
-            self._last = now, self.capture_with_bodies()[0]
-        return self._last[1]
+        last = self._last
+        if last is None or last[1].time != self._time_s() or not np.array_equal(last[0], now):
+            last = self._last = now, self._picture_of(now)[0]
+        return last[1]
 
     def capture_with_bodies(self) -> tuple[CameraImage, Rendering]:
         """A picture and what it was rendered to, for training and for tests to judge by."""
-        optics, pose = self._optics, self.pose()
+        return self._picture_of(self._arrangement())
+
+    def _picture_of(self, arrangement: NDArray[np.float64]) -> tuple[CameraImage, Rendering]:
+        optics, pose, time_s = self._optics, self.pose(), self._time_s()
         in_scene = self._mount.base @ pose
         view = CameraOptics(in_scene, optics.size, optics.focal_px, optics.near_m)
-        time_s = self._time_s()
-        rendering = self._renderer.render(view, self._lighting.light_at(time_s))
+        rendering = self._draw(arrangement, view, self._lighting.light_at(time_s))
         lens = PinholeOptics(optics.focal_px, view.center_px)
         image = CameraImage(
             bgr=self._lighting.expose(rendering.bgr, time_s),
@@ -129,6 +157,16 @@ class WorkcellCamera:
             time=time_s,
         )
         return image, rendering
+
+    def _draw(
+        self, arrangement: NDArray[np.float64], view: CameraOptics, light: Light
+    ) -> Rendering:
+        """What is seen from where the camera is: drawn anew once anything has moved."""
+        drawn = self._drawn
+        if drawn is None or not drawn.is_still(arrangement, light):
+            rendering = self._renderer.render(view, light)
+            drawn = self._drawn = _Drawn(arrangement, light, rendering)
+        return drawn.rendering
 
     def _measured(self, rendering: Rendering, lens: PinholeOptics) -> NDArray[np.float32]:
         """The depth, with nothing measured where robots are that say where they are."""

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mend.robots.body import Matrix4
 from mend.sim.workcell.quiet import silenced
@@ -37,8 +38,8 @@ def connect() -> Client:
         return Engine(pybullet.DIRECT)
 
 
-def arrangement(client: Client) -> bytes:
-    """Where every body and joint is, exactly: two that are equal look the same."""
+def arrangement(client: Client) -> NDArray[np.float64]:
+    """Where every body and joint is (metres, radians): two that are equal look the same."""
     values: list[float] = []
     for number in range(client.getNumBodies()):
         body = client.getBodyUniqueId(number)
@@ -46,7 +47,7 @@ def arrangement(client: Client) -> bytes:
             values.extend(coordinates)
         if joints := client.getNumJoints(body):
             values.extend(each[0] for each in client.getJointStates(body, range(joints)))
-    return np.array(values).tobytes()
+    return np.array(values)
 
 
 def wake(client: Client, body_id: int) -> None:
