@@ -6,6 +6,8 @@ from typing import Any
 from mend.robots.arm.arm import Arm
 from mend.robots.arm.behaviors.behavior import ArmBehavior
 from mend.robots.arm.behaviors.execution import ArmExecution
+from mend.robots.arm.behaviors.foresight import plan_ahead
+from mend.robots.arm.behaviors.plan_memory import PlanMemory
 from mend.robots.arm.behaviors.progress import ArmProgress
 from mend.robots.arm.behaviors.work import Work
 from mend.robots.arm.body import ArmBody
@@ -67,6 +69,8 @@ class ArmSubsystem:
         self._monitors = for_view(monitors.values(), ArmView)
         self._perception = perception or Perception(body, model, catalogue)
         self._resolver = CommandResolver(self._behaviors, catalogue, model.names)
+        self._plans = PlanMemory()
+        self._work: Work | None = None
         self._films = films and FOREARM in body.cameras
         self._shown = ShownArm(body, catalogue, self._perception)
 
@@ -100,7 +104,8 @@ class ArmSubsystem:
         assignment = self._resolver.assign(start)
         self._perception.hand.clip.begin()
         progress = ArmProgress(was_done=assignment.was_done)
-        work = Work(assignment, progress, self.effector, self._perception, report)
+        work = Work(assignment, progress, self.effector, self._perception, report, self._plans)
+        self._work = work
         return ArmExecution(work, [each.create({}) for each in self._monitors])
 
     def look(
@@ -115,7 +120,15 @@ class ArmSubsystem:
         # What is held in the middle of a step stays there: only a resume or a retreat moves it.
         may_move = (held is None or held.step == 0) and not self._perception.hand.holds()
         looker = self._looker(held, report, may_move=may_move, finished=results)
-        return look_as_told(looker, command, look, self._resolver)
+        routine = look_as_told(looker, command, look, self._resolver)
+        return routine if look.expect is None else self._planning_ahead(routine)
+
+    def _planning_ahead(self, routine: Routine[Looked]) -> Routine[Looked]:
+        """Whoever waits for help uses the time."""
+        looked = yield from routine
+        if self._work is not None:
+            plan_ahead(self._work)
+        return looked
 
     def glance(self, command: str, held: AnyExecution | None) -> Looked:
         """What the head camera sees now; it judges no results."""

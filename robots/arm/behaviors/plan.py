@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from mend.robots.arm.behaviors.errand import Errand, errand_of
 from mend.robots.arm.behaviors.grasp_choice import Crowding, others
+from mend.robots.arm.behaviors.plan_memory import PlannedFor
 from mend.robots.arm.behaviors.planning import Barred, Plan, bar_of, plan_amid
 from mend.robots.arm.behaviors.work import Work
 from mend.robots.arm.body import ToolPose
@@ -31,7 +32,12 @@ def make_plan(work: Work) -> Routine[Plan | None]:
     boxes = others(part, perception.head.seen_boxes(findings.image or perception.head.look()))
     errand, table = errand_of(assignment, perception, findings), perception.catalogue.table
     try:
-        found = yield from plan_amid(errand, work.arm.body, table, boxes)
+        found: Plan | Barred | None = None
+        if not findings.carrying:
+            wanted = PlannedFor(assignment, errand.found, boxes, work.arm.body.tool_pose())
+            found = work.plans.take(wanted)
+        if found is None:
+            found = yield from plan_amid(errand, work.arm.body, table, boxes)
         _judge_way(found.way, work)
         if isinstance(found, Plan):
             return found

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from mend.robots.arm.arm import Arm
 from mend.robots.arm.behaviors.assignment import Assignment
+from mend.robots.arm.behaviors.plan_memory import PlanMemory
 from mend.robots.arm.behaviors.progress import ArmProgress
 from mend.robots.arm.perception import Perception
 from mend.robots.catalogue import Part
@@ -13,13 +14,17 @@ from mend.robots.link.messages import Location, ReportBody
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What all that prepares, walks and watches one execution shares; reports go to `report`."""
+    """What all that prepares, walks and watches one execution shares; reports go to `report`.
+
+    `plans` has what was planned while the arm waited, maybe by an execution before.
+    """
 
     assignment: Assignment
     progress: ArmProgress
     arm: Arm
     perception: Perception
     report: Callable[[ReportBody], None]
+    plans: PlanMemory
 
     @property
     def unconfirmed(self) -> tuple[Part, Location] | None:
