@@ -73,3 +73,15 @@ def test_what_is_seen_at_a_grazing_angle_has_no_depth() -> None:
     steep = np.tile(1.0 / (0.5 + 0.01 * columns), (240, 1)).astype(np.float32)
     assert np.isfinite(measure(depth)[:, 5:-5]).mean() > 0.99
     assert np.isnan(measure(steep)[:, 2:8]).mean() > 0.9
+
+
+def test_a_picture_that_comes_again_is_as_noisy_as_one_that_is_new() -> None:
+    depth, bgr = flat(1.0), GREY.copy()
+    depth[:, 160:] = 1.2
+    bgr[:40, :40] = 14
+    again, anew = (DepthNoise(1.0, np.random.default_rng(5)) for _ in range(2))
+    first = again.measure(depth, bgr, OPTICS)
+    assert np.array_equal(first, anew.measure(depth, bgr, OPTICS), equal_nan=True)
+    second = again.measure(depth, bgr, OPTICS)
+    assert np.array_equal(second, anew.measure(depth.copy(), bgr.copy(), OPTICS), equal_nan=True)
+    assert not np.array_equal(first, second, equal_nan=True)

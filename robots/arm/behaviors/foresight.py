@@ -30,5 +30,8 @@ def plan_ahead(work: Work) -> None:
     except StopIteration as end:
         if isinstance(end.value, Plan):
             work.plans.keep(wanted, end.value)
+            # What is on its way is looked for once while nothing changes.
+            perception.head.obstruction(image, end.value.way, part)
+            perception.head.occupant(image, part, sighting, work.assignment.target)
     except UngraspableError:
         return

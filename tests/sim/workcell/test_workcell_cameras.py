@@ -9,13 +9,14 @@ from workcell_hands import Hands
 
 from mend.robots.body import CameraImage
 from mend.robots.vision.projection import project, unproject
+from mend.sim.raster import Light
 from mend.sim.workcell.options import WorkcellOptions
 from mend.sim.workcell.parts import RigidPart
 from mend.sim.workcell.physics import to_matrix
-from mend.sim.workcell.rendering import Rendering
+from mend.sim.workcell.rendering import CameraOptics, Renderer, Rendering
 from mend.sim.workcell.world import WorkcellWorld
 from mend.tasks.intervention import Act, Intervention
-from mend.tasks.scene import Scene
+from mend.tasks.scene import Pose, Scene
 
 pytestmark = pytest.mark.slow
 
@@ -147,3 +148,34 @@ def test_the_same_seed_gives_the_same_pictures(scene: Scene) -> None:
         pictures.append(world.head.capture().bgr)
         world.close()
     assert np.array_equal(*pictures)
+
+
+class CountingRenderer:
+    """Counts how often it draws."""
+
+    def __init__(self, renderer: Renderer) -> None:
+        self._renderer = renderer
+        self.drawn = 0
+
+    def render(self, view: CameraOptics, light: Light) -> Rendering:
+        self.drawn += 1
+        return self._renderer.render(view, light)
+
+
+def test_what_has_not_moved_is_drawn_once_but_measured_each_time(scene: Scene) -> None:
+    world = WorkcellWorld(scene, 5, WorkcellOptions(depth_noise=1.0))
+    for _ in range(60):
+        world.body.advance_cycle()
+    renderer = world.head._renderer = CountingRenderer(world.head._renderer)
+    pictures = []
+    for _ in range(5):
+        pictures.append(world.head.capture())
+        world.body.advance_cycle()
+    assert renderer.drawn == 1
+    assert not np.array_equal(pictures[0].depth_m, pictures[4].depth_m, equal_nan=True)
+    x, y, _ = world.parts["leg"].pose().position
+    away = Intervention(act=Act.MOVE, object="leg", to=Pose(x=x + 0.05, y=y))
+    assert world.intervene(away) == ""
+    world.head.capture()
+    assert renderer.drawn == 2
+    world.close()
