@@ -21,8 +21,8 @@ _NEAREST = 0.5
 _LOWEST_M = 0.1
 _OLDEST_S = 1.0
 """An older picture tells nothing of now."""
-_ALL_BUT = 99.0
-"""Percent of the pixels that are as dark, or as bright."""
+_ALL_BUT = 0.01
+"""A picture is black, or white, in which no more of the pixels are anything else."""
 
 
 def why_outdated(image: CameraImage, now_s: float) -> str | None:
@@ -51,9 +51,10 @@ def why_blind(
     """
     scale = 1.0 / _SPARSE
     smooth = cv2.resize(image.bgr, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
-    if float(np.percentile(smooth.max(axis=2), _ALL_BUT)) <= DARKEST:
+    blue, green, red = cv2.split(smooth)
+    if np.mean(cv2.max(cv2.max(blue, green), red) > DARKEST) < _ALL_BUT:
         return "the picture of my head camera is black"
-    if float(np.percentile(smooth.min(axis=2), 100.0 - _ALL_BUT)) >= BRIGHTEST:
+    if np.mean(cv2.min(cv2.min(blue, green), red) < BRIGHTEST) < _ALL_BUT:
         return "the picture of my head camera is white"
     depth_m = None if image.depth_m is None else image.depth_m[::_SPARSE, ::_SPARSE]
     if depth_m is None or not is_measured(depth_m).any():

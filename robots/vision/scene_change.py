@@ -5,6 +5,8 @@ Frame differencing against a reference picture, with the threshold from the pict
 2.3: noise modelling by the median of the differences).
 """
 
+import math
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -43,11 +45,17 @@ def shows_change(before: CameraImage, now: CameraImage) -> bool:
         return True
     if is_same(before, now):
         return False
-    return _differ(*_equally_exposed(before, now), _LEAST_GREY) or (
+    return _differ_in_color(before, now) or (
         before.depth_m is not None
         and now.depth_m is not None
         and _differ(_known(before.depth_m), _known(now.depth_m), _LEAST_DEPTH_M)
     )
+
+
+def _differ_in_color(before: CameraImage, now: CameraImage) -> bool:
+    if np.array_equal(before.bgr, now.bgr):
+        return False
+    return _differ(*_equally_exposed(before, now), _LEAST_GREY)
 
 
 def still_measures(before: CameraImage, now: CameraImage, mask: NDArray[np.uint8]) -> bool:
@@ -114,10 +122,19 @@ def _differ(before: Picture, now: Picture, least: float) -> bool:
     changed = np.asarray(np.asarray(beyond) > limit, np.uint8)
     if changed.ndim == 3:
         changed = changed.max(axis=2)
-    if np.count_nonzero(changed) < fewest_px:
+    return has_patch(changed, math.ceil(fewest_px))
+
+
+def has_patch(changed: NDArray[np.uint8], pixels: int) -> bool:
+    """Whether so many connected pixels are not 0."""
+    if np.count_nonzero(changed) < pixels:
+        return False
+    # Each pixel of a patch is so near to all of it: most pictures need no components.
+    around = (2 * pixels - 1, 2 * pixels - 1)
+    if np.max(cv2.boxFilter(changed, cv2.CV_32F, around, normalize=False)) < pixels - 0.5:
         return False
     _, _, stats, _ = cv2.connectedComponentsWithStats(changed)
-    return bool(stats[1:, cv2.CC_STAT_AREA].max(initial=0) >= fewest_px)
+    return bool(stats[1:, cv2.CC_STAT_AREA].max(initial=0) >= pixels)
 
 
 def _filled(before: Picture, now: Picture) -> Picture:

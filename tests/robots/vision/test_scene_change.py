@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
 from mend.robots.body import CameraImage
-from mend.robots.vision.scene_change import shows_change, still_measures
+from mend.robots.vision.scene_change import has_patch, shows_change, still_measures
 
 NOISE = 3.0
 DEPTH_NOISE_M = 0.002
@@ -68,3 +69,18 @@ def test_what_is_measured_no_more_is_not_seen_any_more() -> None:
         lost = replace(now, depth_m=depth_m)
         assert not still_measures(before, lost, mask)
         assert not shows_change(before, lost)
+
+
+@pytest.mark.parametrize("pixels", [6, 9, 15])
+def test_as_many_pixels_are_a_change_only_where_they_are_connected(pixels: int) -> None:
+    """Wherever they are, at the rim too, and however they lie."""
+    rng = np.random.default_rng(pixels)
+    told = []
+    for _ in range(200):
+        changed = (rng.random((24, 32)) < rng.uniform(0.02, 0.3)).astype(np.uint8)
+        _, _, stats, _ = cv2.connectedComponentsWithStats(changed)
+        largest = int(stats[1:, cv2.CC_STAT_AREA].max(initial=0))
+        assert has_patch(changed, pixels) == (largest >= pixels)
+        told.append(largest >= pixels)
+    assert any(told)
+    assert not all(told)
