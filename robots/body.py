@@ -74,22 +74,13 @@ class Body(Protocol):
 
 
 class MovingBody(Body, Protocol):
-    """What of a robot's hardware moves: one motion at a time."""
-
-    def set_speed(self, speed: float) -> None:
-        """Change the speed of the motion under way from the next cycle on."""
-        ...
+    """What of a robot's hardware moves."""
 
     def stop(self) -> None:
-        """Stop within one control cycle and hold still."""
+        """Stop as soon as it can and hold still; what was under way is over."""
         ...
 
     @property
     def moving(self) -> bool:
-        """Whether a motion is under way."""
-        ...
-
-    @property
-    def progress(self) -> float:
-        """The fraction in [0, 1] of the motion under way that is done; 1 when none is."""
+        """Whether anything moves, or is about to."""
         ...

@@ -58,7 +58,7 @@ class Robot:
     """An `AgentCore` over a body, with an arm, a base, or both.
 
     One activity is under way at a time: an execution or a look. A new command replaces a look
-    under way, which is then not reported. What comes while it retreats waits until it is at rest.
+    under way, which is then not reported. What comes while it retreats or brakes waits for its end.
     A behavior is done by the subsystem that has it; looks belong to that of the execution that
     waits, or else to the first.
     """
@@ -77,6 +77,7 @@ class Robot:
         self._activity: Routine[None] | None = None
         self._decided: Routine[None] | None = None
         self._looking = False
+        self._braking: Routine[None] | None = None
         self._execution: AnyExecution | None = None
         self._attempts: dict[str, int] = {}
         self._waiting: list[tuple[str, CommandBody]] = []
@@ -228,7 +229,7 @@ class Robot:
             self._report(Rejected(command=command_id, reason=str(error)))
 
     def _take(self, command_id: str, body: CommandBody) -> None:
-        if isinstance(body, Start | Resume | Look) and self._retreating:
+        if isinstance(body, Start | Resume | Look) and self._coming_to_rest:
             self._waiting.append((command_id, body))
             return
         match body:
@@ -277,13 +278,25 @@ class Robot:
             if interrupt.retreat:
                 self._activity = self._retreat_idle()
             else:
-                self._report(Holding(execution=None, at=self._where()))
+                self._hold(None)
         elif interrupt.retreat:
             self._activity = execution.retreat(end=True)
         else:
-            self._activity = None
             execution.hold()
-            self._report(Holding(execution=execution.id, at=self._where()))
+            self._hold(execution.id)
+
+    def _hold(self, execution: str | None) -> None:
+        """Say that it holds, once it stands."""
+        if self._acting.effector.braking:
+            self._activity = self._braking = self._brake(execution)
+        else:
+            self._activity = None
+            self._report(Holding(execution=execution, at=self._where()))
+
+    def _brake(self, execution: str | None) -> Routine[None]:
+        while self._acting.effector.braking:
+            yield
+        self._report(Holding(execution=execution, at=self._where()))
 
     def _retreat_idle(self) -> Routine[None]:
         for each in self._subsystems:
@@ -339,7 +352,10 @@ class Robot:
         return execution is not None and execution.state is ExecutionState.RUNNING
 
     @property
-    def _retreating(self) -> bool:
+    def _coming_to_rest(self) -> bool:
+        """Whether it retreats, or brakes before it holds."""
+        if self._activity is not None and self._activity is self._braking:
+            return True
         execution = self._execution
         return (
             self._executing

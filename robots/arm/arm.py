@@ -17,13 +17,16 @@ class Arm(Effector[ArmBody]):
 
     def __init__(self, body: ArmBody) -> None:
         super().__init__(body)
+        self._speed = 1.0
+        """That of the motion under way, before it is scaled."""
         self._opened_m = 0.0
         """How wide the gripper was last told to open; 0 since it was told to close."""
 
     def start(self, path: ArmPath, segment: int, speed: float) -> None:
         """Start one segment of a path."""
         self.at_rest = False
-        self.body.follow(path, segment, self._at_speed(speed))
+        self._speed = speed
+        self.body.follow(path, segment, self._scaled(speed))
 
     def follow(self, path: ArmPath, speed: float) -> Routine[None]:
         """Go through a whole path."""
@@ -87,6 +90,10 @@ class Arm(Effector[ArmBody]):
             if path is not None:
                 yield from self.follow(path, _RETREAT_SPEED)
                 return
+
+    def _apply_speed(self) -> None:
+        if self.body.moving:
+            self.body.set_speed(self._scaled(self._speed))
 
     def _opening(self, opening_m: float | None) -> float:
         return self.body.gripper.max_opening_m if opening_m is None else opening_m

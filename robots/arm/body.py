@@ -102,7 +102,19 @@ class ArmPath(Protocol):
 
 
 class ArmBody(MovingBody, Protocol):
-    """An arm, a gripper and cameras: `head` (with depth) and `forearm` for `pick_and_place`."""
+    """An arm, a gripper and cameras: `head` (with depth) and `forearm` for `pick_and_place`.
+
+    One motion is under way at a time; `stop` stops it within one control cycle.
+    """
+
+    def set_speed(self, speed: float) -> None:
+        """Change the speed of the motion under way from the next cycle on."""
+        ...
+
+    @property
+    def progress(self) -> float:
+        """The fraction in [0, 1] of the motion under way that is done; 1 when none is."""
+        ...
 
     @property
     def reach(self) -> Reach: ...

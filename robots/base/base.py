@@ -1,45 +1,96 @@
-"""A base that drives: sending it on its way, in routines that take many control cycles."""
+"""A base that drives: sending it on its way, a control cycle at a time."""
 
 import math
 
 import numpy as np
 
 from mend.robots.base.body import BaseBody, BasePose
+from mend.robots.base.motion.surroundings import Seen, Surroundings
+from mend.robots.base.motion.warming_up import warm_up
+from mend.robots.base.motion.way_follower import WayFollower
+from mend.robots.base.ways import Ways
 from mend.robots.execution.effector import Effector
 
-SPARE_M = 0.15
-"""It stops so far before what stands in its way."""
-_BESIDE_M = 0.05
-"""What it passes beside is so far away at least."""
+_SLOW_M_S, _SLOW_RAD_S = 0.05, 0.1
 
 
 class Base(Effector[BaseBody]):
     """A base; it is at rest wherever it stands."""
 
-    def __init__(self, body: BaseBody) -> None:
+    def __init__(self, body: BaseBody, ways: Ways) -> None:
+        """`ways` says which points to pass to a goal."""
+        warm_up()
         super().__init__(body)
+        self.ways = ways
         self.at_rest = True
+        self._speed = 1.0
+        self._surroundings = Surroundings()
+        self._following: WayFollower | None = None
 
     def start(self, to: BasePose, speed: float) -> None:
-        """Start driving straight to a pose."""
+        """Begin to drive to a pose, at `speed` in (0, 1] of its best. Raises `CommandError`."""
+        self._following, self._speed = self._follower(to), speed
         self.at_rest = False
-        self.body.drive(to, self._at_speed(speed))
+
+    def drive_on(self) -> None:
+        """Choose how to move in the next control cycle; once a cycle, after `start`."""
+        assert self._following is not None, "it was started"
+        here, now = self.body.pose(), self.body.velocity()
+        seen = self._look_around(here)
+        self.body.move(self._following.choose(here, now, seen, self.pace))
 
     def stop(self) -> None:
-        """Stop within one control cycle."""
+        """Brake; it is on no way any more."""
         super().stop()
+        self._following = None
         self.at_rest = True
 
-    def in_the_way_m(self, to: BasePose) -> float | None:
-        """How far what stands in the straight way to a pose is from its rim; None if it is free."""
-        body, here = self.body, self.body.pose()
-        scan, length_m = body.scan(), here.distance_m(to)
-        if length_m < 1e-6:
+    @property
+    def braking(self) -> bool:
+        return self._following is None and self.body.moving
+
+    @property
+    def pace(self) -> float:
+        """How fast it may go at the moment, in (0, 1] of its best."""
+        return self._scaled(self._speed)
+
+    @property
+    def slow(self) -> bool:
+        """Whether it stands, or is about to."""
+        now = self.body.velocity()
+        return now.speed_m_s < _SLOW_M_S and abs(now.turn_rad_s) < _SLOW_RAD_S
+
+    @property
+    def following(self) -> WayFollower | None:
+        """How it gets on along its way; None while it is on none."""
+        return self._following
+
+    def in_the_way_m(self) -> float | None:
+        """How far what leaves it no way on is from its rim; None where it gets on."""
+        following, here = self._following, self.body.pose()
+        if following is None or not following.barred:
             return None
-        bearing = math.atan2(to.y - here.y, to.x - here.x) - here.yaw
-        seen = np.isfinite(scan.ranges_m)
-        ranges_m, angles_rad = scan.ranges_m[seen], scan.angles_rad[seen] - bearing
-        along, across = ranges_m * np.cos(angles_rad), np.abs(ranges_m * np.sin(angles_rad))
-        met = (across < body.radius_m + _BESIDE_M) & (along > 0.0)
-        met &= along < length_m + body.radius_m + _BESIDE_M
-        return float(along[met].min()) - body.radius_m if met.any() else None
+        points = self._surroundings.seen.points
+        met = following.first_met(points)
+        away_m = np.hypot(points[:, 0] - here.x, points[:, 1] - here.y).min(initial=math.inf)
+        if met is not None:
+            away_m = math.dist(met, (here.x, here.y))
+        return max(0.0, float(away_m) - self.body.radius_m)
+
+    def gets_to(self, to: BasePose) -> bool:
+        """Whether what is seen leaves a way on to a pose. Raises `CommandError`."""
+        here = self.body.pose()
+        return self._follower(to).gets_on(here, self._look_around(here).points)
+
+    # --- Within -------------------------------------------------------------------------------
+
+    def _apply_speed(self) -> None:
+        """Every cycle asks how fast it may go."""
+
+    def _follower(self, to: BasePose) -> WayFollower:
+        body, here = self.body, self.body.pose()
+        way = [(here.x, here.y), *self.ways.path(here, to)]
+        return WayFollower(body.limits, body.radius_m, body.control_period_s, way, to)
+
+    def _look_around(self, here: BasePose) -> Seen:
+        return self._surroundings.take(self.body.scan(), here, self.body.time_s())

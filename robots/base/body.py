@@ -44,12 +44,54 @@ class RangeScan:
     time: float
 
 
+@dataclass(frozen=True, slots=True)
+class Velocity:
+    """How a base moves, in its own frame: forward, to the left, and turning to the left."""
+
+    forward_m_s: float = 0.0
+    left_m_s: float = 0.0
+    turn_rad_s: float = 0.0
+
+    @property
+    def speed_m_s(self) -> float:
+        """How fast its middle goes, in whichever direction."""
+        return math.hypot(self.forward_m_s, self.left_m_s)
+
+
+STANDING = Velocity()
+
+
+@dataclass(frozen=True, slots=True)
+class DriveLimits:
+    """How fast a base goes and turns at most, and how soon it goes faster or slower.
+
+    `sideways`: it goes in every direction; any other goes forward only, and turns on the spot.
+    """
+
+    speed_m_s: float
+    acceleration_m_s2: float
+    turn_rad_s: float
+    turn_acceleration_rad_s2: float
+    sideways: bool
+
+    def __post_init__(self) -> None:
+        for name in ("speed_m_s", "acceleration_m_s2", "turn_rad_s", "turn_acceleration_rad_s2"):
+            value = getattr(self, name)
+            if not 0.0 < value < math.inf:
+                raise ValueError(f"limits of a base: {name} is {value}; it must be above 0")
+
+
 class BaseBody(MovingBody, Protocol):
-    """A base that drives over a floor, with a laser."""
+    """A base that drives over a floor, with a laser. `stop` has it brake, as hard as it can."""
 
     @property
     def radius_m(self) -> float:
         """All of the base, with what it carries, is so near to its middle."""
+        ...
+
+    @property
+    def limits(self) -> DriveLimits:
+        """What it can do, at any time."""
         ...
 
     @property
@@ -61,14 +103,17 @@ class BaseBody(MovingBody, Protocol):
         """Where it is, as it knows it itself (odometry, or a localizer)."""
         ...
 
+    def velocity(self) -> Velocity:
+        """How it moves now, as its odometry says."""
+        ...
+
     def scan(self) -> RangeScan:
         """The newest scan."""
         ...
 
-    def drive(self, to: BasePose, speed: float) -> None:
-        """Turn towards a pose, drive straight to it, and turn as it says.
+    def move(self, velocity: Velocity) -> None:
+        """Move so, as soon as its limits allow, until told otherwise.
 
-        `speed` in (0, 1] scales it. It replaces what was under way, and drives whatever is in the
-        way: who calls looks out.
+        It drives whatever is in the way: who calls looks out.
         """
         ...

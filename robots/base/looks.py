@@ -26,7 +26,10 @@ def look_as_told(
     goal = held.goal if isinstance(held, BaseExecution) else None
 
     def way_is_clear() -> bool:
-        return goal is None or base.in_the_way_m(goal) is None
+        try:
+            return goal is None or base.gets_to(goal)
+        except CommandError:
+            return False
 
     def routine() -> Routine[Looked]:
         end_s = base.body.time_s() + look.within_s

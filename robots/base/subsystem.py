@@ -4,11 +4,12 @@ import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from mend.robots.base.base import Base
-from mend.robots.base.behaviors.behavior import BaseBehavior, BaseSituation
+from mend.robots.base.behaviors.behavior import BaseBehavior, BaseSituation, Drive
 from mend.robots.base.behaviors.execution import BaseExecution
 from mend.robots.base.body import BaseBody, BasePose
 from mend.robots.base.looks import answer, look_as_told
 from mend.robots.base.monitors.monitor import BaseView
+from mend.robots.base.ways import StraightWays, Ways
 from mend.robots.body import CameraImage
 from mend.robots.catalogue import Catalogue
 from mend.robots.execution.behavior import Behavior, of_kind, read_parameters
@@ -40,9 +41,10 @@ class BaseSubsystem:
         catalogue: Catalogue,
         behaviors: Mapping[str, type[Behavior]],
         monitors: Mapping[str, type[AnyMonitor]],
+        ways: Ways | None = None,
     ) -> None:
-        """Of `behaviors` and `monitors` it takes those of bases."""
-        self.effector = Base(body)
+        """It takes those of bases. Without `ways` it goes straight to each goal."""
+        self.effector = Base(body, ways or StraightWays())
         self._places = {name: _pose(each) for name, each in catalogue.places.items()}
         self._behaviors = of_kind(behaviors, BaseBehavior)  # type: ignore[type-abstract]
         self._monitors = for_view(monitors.values(), BaseView)
@@ -60,10 +62,12 @@ class BaseSubsystem:
             places=self._places,
             target=self._target(getattr(parameters, "place", None), start.target),
         )
+        drives = behavior.drives(parameters, situation)
+        self._check_ways(situation.here, drives)
         return BaseExecution(
             start.execution,
             behavior.monitored_as,
-            behavior.drives(parameters, situation),
+            drives,
             self.effector,
             [each.create({}) for each in self._monitors],
             report,
@@ -109,6 +113,12 @@ class BaseSubsystem:
 
     def note(self, looked: Looked) -> None:
         """What others located does not concern it."""
+
+    def _check_ways(self, here: BasePose, drives: Sequence[Drive]) -> None:
+        """Raises `CommandError` where there is no way from one goal to the next."""
+        for drive in drives:
+            self.effector.ways.path(here, drive.to)
+            here = drive.to
 
     def _target(self, place: str | None, told: Location | None) -> BasePose | None:
         if told is not None:

@@ -1,5 +1,6 @@
 """An effector: what a robot acts with, and how fast that may go at the moment."""
 
+from abc import ABC, abstractmethod
 from typing import Generic, TypeVar
 
 from mend.robots.body import MovingBody
@@ -8,7 +9,7 @@ from mend.robots.execution.routine import Routine
 B = TypeVar("B", bound=MovingBody)
 
 
-class Effector(Generic[B]):
+class Effector(ABC, Generic[B]):
     """An arm with its gripper, or a base that drives, over its body."""
 
     def __init__(self, body: B) -> None:
@@ -17,7 +18,6 @@ class Effector(Generic[B]):
         """Whether it is where it is in nobody's way: an arm at neutral, a base that stands."""
         self._slow_down = 1.0
         self._caution = 1.0
-        self._speed = 1.0
 
     def slow_down(self, factor: float) -> None:
         """Scale all motion from now on, as the service commanded."""
@@ -30,8 +30,13 @@ class Effector(Generic[B]):
         self._apply_speed()
 
     def stop(self) -> None:
-        """Stop within one control cycle."""
+        """Stop as soon as the body can."""
         self.body.stop()
+
+    @property
+    def braking(self) -> bool:
+        """Whether it still moves although it was told to stop."""
+        return False
 
     def settle(self) -> Routine[None]:
         """Wait until nothing moves any more."""
@@ -44,14 +49,10 @@ class Effector(Generic[B]):
         while self.body.time_s() < end - 1e-9:
             yield
 
-    def _at_speed(self, speed: float) -> float:
-        """What a motion of this speed, in (0, 1] of the best, has now; it is under way from now."""
-        self._speed = speed
-        return self._scaled(speed)
-
     def _scaled(self, speed: float) -> float:
+        """What a motion of this speed, in (0, 1] of the best, has now."""
         return speed * self._slow_down * self._caution
 
+    @abstractmethod
     def _apply_speed(self) -> None:
-        if self.body.moving:
-            self.body.set_speed(self._scaled(self._speed))
+        """What is under way goes on as `_scaled` says."""

@@ -40,10 +40,9 @@ class Execution(ABC, Generic[G]):
         return self._progress.step
 
     @property
+    @abstractmethod
     def fraction(self) -> float:
         """How much of the step under way is done, in [0, 1]."""
-        between = not self._effector.body.moving or self.state is ExecutionState.CONFIRMING
-        return 1.0 if between else self._effector.body.progress
 
     @property
     def over(self) -> bool:
@@ -67,7 +66,7 @@ class Execution(ABC, Generic[G]):
         return self._attempt(resumed=True)
 
     def hold(self) -> None:
-        """Stop within one control cycle and hold. Raises `IllegalTransitionError`."""
+        """Stop as soon as the body can and hold. Raises `IllegalTransitionError`."""
         self._effector.stop()
         if self.state is not ExecutionState.HOLDING:
             self._progress.move_to(ExecutionState.HOLDING)
@@ -100,6 +99,8 @@ class Execution(ABC, Generic[G]):
             yield from self.retreat(end=False)
             return
         self._progress.move_to(ExecutionState.HOLDING)
+        while self._effector.braking:
+            yield
         at_rest = self._effector.at_rest
         self._report(Holding(execution=self.id, at="neutral" if at_rest else "in_place"))
 

@@ -18,6 +18,7 @@ from mend.tasks.scene import Table
 
 PLACES = {
     "near": Location(x=2.0, y=0.0, z=0.0, yaw=0.0),
+    "far": Location(x=6.0, y=0.0, z=0.0, yaw=0.0),
     "corner": Location(x=2.0, y=3.0, z=0.0, yaw=1.5708),
 }
 LONGEST_S = 300.0

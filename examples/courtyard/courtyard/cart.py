@@ -6,15 +6,20 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from courtyard.floor import Circle, ranges_m
-from mend.robots.base.body import BasePose, RangeScan
+from mend.robots.base.body import STANDING, BasePose, DriveLimits, RangeScan, Velocity
 from mend.robots.body import Camera
 from mend.tasks.frames import Frame
 
 RADIUS_M = 0.3
 PERIOD_S = 0.05
-_SPEED_M_S = 0.8
-_TURN_RAD_S = 1.6
-_BEAMS = np.linspace(-math.pi, math.pi, 180, endpoint=False)
+LIMITS = DriveLimits(
+    speed_m_s=0.8,
+    acceleration_m_s2=1.5,
+    turn_rad_s=1.6,
+    turn_acceleration_rad_s2=3.2,
+    sideways=False,
+)
+_BEAMS = np.linspace(-math.pi, math.pi, 360, endpoint=False)
 
 
 class Cart:
@@ -24,6 +29,7 @@ class Cart:
     """
 
     radius_m = RADIUS_M
+    limits = LIMITS
     scan_period_s = 0.1
     control_period_s = PERIOD_S
     cameras: Mapping[str, Camera] = {}
@@ -41,9 +47,7 @@ class Cart:
         self._around = around
         self.place = BasePose(frame.x, frame.y, frame.yaw)
         """In the scene's frame."""
-        self._goal: BasePose | None = None
-        self._speed = 1.0
-        self._begun_m = 0.0
+        self._now = self._told = STANDING
 
     def pose(self) -> BasePose:
         """In its base frame: that in which it stood at the start."""
@@ -54,42 +58,35 @@ class Cart:
         ranges = ranges_m((self.place.x, self.place.y), _BEAMS + self.place.yaw, self._around(self))
         return RangeScan(ranges, _BEAMS, self.time_s())
 
-    def drive(self, to: BasePose, speed: float) -> None:
-        x, y = self._frame.to_scene(to.x, to.y)
-        self._goal = BasePose(x, y, to.yaw + self._frame.yaw)
-        self._speed, self._begun_m = speed, max(self.place.distance_m(self._goal), 1e-9)
+    def velocity(self) -> Velocity:
+        return self._now
 
-    def set_speed(self, speed: float) -> None:
-        self._speed = speed
+    def move(self, velocity: Velocity) -> None:
+        self._told = velocity
 
     def stop(self) -> None:
-        self._goal = None
+        self._told = STANDING
 
     @property
     def moving(self) -> bool:
-        return self._goal is not None
+        return self._now != STANDING or self._told != STANDING
 
-    @property
-    def progress(self) -> float:
-        if self._goal is None:
-            return 1.0
-        return max(0.0, 1.0 - self.place.distance_m(self._goal) / self._begun_m)
+    def jump(self, to: BasePose) -> None:
+        """Stand somewhere else at once (a rebuilt world)."""
+        self.place, self._now, self._told = to, STANDING, STANDING
 
-    def move(self) -> None:
-        """One control cycle: turn towards the goal, drive there, turn as it says."""
-        if self._goal is None:
-            return
-        here, goal = self.place, self._goal
-        left_m = here.distance_m(goal)
-        there = left_m < 1e-6
-        wanted = goal.yaw if there else math.atan2(goal.y - here.y, goal.x - here.x)
-        off = math.remainder(wanted - here.yaw, math.tau)
-        turn = _TURN_RAD_S * self._speed * PERIOD_S
-        if abs(off) > 1e-6:
-            self.place = BasePose(here.x, here.y, here.yaw + max(-turn, min(turn, off)))
-        elif there:
-            self._goal = None
-        else:
-            share = min(1.0, _SPEED_M_S * self._speed * PERIOD_S / left_m)
-            x, y = here.x + share * (goal.x - here.x), here.y + share * (goal.y - here.y)
-            self.place = BasePose(x, y, here.yaw)
+    def advance(self) -> None:
+        """One control cycle: come as near to the velocity that it was told as it can, and go on."""
+        now, told = self._now, self._told
+        forward = _towards(now.forward_m_s, told.forward_m_s, LIMITS.acceleration_m_s2)
+        turn = _towards(now.turn_rad_s, told.turn_rad_s, LIMITS.turn_acceleration_rad_s2)
+        self._now = Velocity(forward, 0.0, turn)
+        here, heading = self.place, self.place.yaw + turn * PERIOD_S / 2
+        x = here.x + forward * PERIOD_S * math.cos(heading)
+        y = here.y + forward * PERIOD_S * math.sin(heading)
+        self.place = BasePose(x, y, here.yaw + turn * PERIOD_S)
+
+
+def _towards(now: float, told: float, acceleration: float) -> float:
+    most = acceleration * PERIOD_S
+    return now + max(-most, min(most, told - now))

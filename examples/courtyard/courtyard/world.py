@@ -1,4 +1,4 @@
-"""The courtyard as it really is: carts, a lamp post in the middle, and a visitor now and then."""
+"""The courtyard as it really is: carts, a lamp post in the middle, and visitors now and then."""
 
 import math
 from collections.abc import Iterable
@@ -12,6 +12,7 @@ from mend.tasks.intervention import Act, Intervention
 
 POST: Circle = (0.0, 0.0, 0.2)
 _VISITOR_RADIUS_M = 0.25
+_VISITORS = 8
 
 
 class Courtyard:
@@ -19,7 +20,7 @@ class Courtyard:
 
     def __init__(self, frames: Iterable[Frame]) -> None:
         self._time_s = 0.0
-        self.visitor: Circle | None = None
+        self.visitors: list[Circle] = []
         self.carts = [Cart(each, self.time_s, self.around, self.advance_cycle) for each in frames]
 
     def time_s(self) -> float:
@@ -28,28 +29,31 @@ class Courtyard:
     def advance_cycle(self) -> None:
         self._time_s += PERIOD_S
         for each in self.carts:
-            each.move()
+            each.advance()
 
     def around(self, cart: Cart) -> list[Circle]:
         """All that a cart's laser may see but for the walls."""
         carts = [(e.place.x, e.place.y, RADIUS_M) for e in self.carts if e is not cart]
-        return [POST, *carts, *([] if self.visitor is None else [self.visitor])]
+        return [POST, *carts, *self.visitors]
 
     # --- People -------------------------------------------------------------------------------
 
     def intervene(self, intervention: Intervention) -> str:
-        """A visitor steps before the first cart that drives, or goes away."""
+        """Visitors gather round the first cart that drives, or go away."""
         match intervention.act:
             case Act.BLOCK:
                 driving = next((each for each in self.carts if each.moving), None)
                 if driving is None:
                     return "nobody stands in the way of carts that stand"
-                at, ahead_m = driving.place, RADIUS_M + _VISITOR_RADIUS_M + 0.5
-                x, y = at.x + ahead_m * math.cos(at.yaw), at.y + ahead_m * math.sin(at.yaw)
-                self.visitor = (x, y, _VISITOR_RADIUS_M)
+                at, away_m = driving.place, RADIUS_M + _VISITOR_RADIUS_M + 0.5
+                bearings = [at.yaw + math.tau * each / _VISITORS for each in range(_VISITORS)]
+                self.visitors = [
+                    (at.x + away_m * math.cos(b), at.y + away_m * math.sin(b), _VISITOR_RADIUS_M)
+                    for b in bearings
+                ]
                 return ""
             case Act.RELEASE:
-                self.visitor = None
+                self.visitors = []
                 return ""
             case act:
                 return f"there is nothing in a courtyard for which anybody could do '{act}'"
@@ -58,16 +62,15 @@ class Courtyard:
 
     def snapshot(self) -> dict[str, Any]:
         carts = [[each.place.x, each.place.y, each.place.yaw] for each in self.carts]
-        return {"time_s": self._time_s, "carts": carts, "visitor": self.visitor}
+        return {"time_s": self._time_s, "carts": carts, "visitors": self.visitors}
 
     def restore(self, snapshot: dict[str, Any]) -> None:
         if len(snapshot["carts"]) != len(self.carts):
             raise ValueError(f"expected {len(self.carts)} carts, got {len(snapshot['carts'])}")
         self._time_s = snapshot["time_s"]
-        self.visitor = None if snapshot["visitor"] is None else tuple(snapshot["visitor"])
+        self.visitors = [(x, y, radius) for x, y, radius in snapshot["visitors"]]
         for cart, place in zip(self.carts, snapshot["carts"], strict=True):
-            cart.stop()
-            cart.place = BasePose(*place)
+            cart.jump(BasePose(*place))
 
     def close(self) -> None:
         """Nothing is open."""

@@ -33,6 +33,11 @@ class ArmExecution(Execution[ArmProgress]):
         self._steps = StepWalk(work, self._watch)
 
     @property
+    def fraction(self) -> float:
+        between = not self._arm.body.moving or self.state is ExecutionState.CONFIRMING
+        return 1.0 if between else self._arm.body.progress
+
+    @property
     def object(self) -> str | None:
         part = self._assignment.part
         return None if part is None else part.name

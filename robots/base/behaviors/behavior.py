@@ -12,7 +12,7 @@ from mend.robots.execution.phase import Phase
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """One step: drive straight to a pose, at `speed` in (0, 1] of the base's best.
+    """One step: drive to a pose, at `speed` in (0, 1] of the base's best.
 
     `wait_s` passes there before the next step. `phase` says what the step is for: monitors watch
     phases.

@@ -1,12 +1,14 @@
-"""The execution of one behavior of a base: its drives, with stops before what stands in the way."""
+"""The execution of one behavior of a base: its drives, with waits where something bars the way."""
 
 from collections.abc import Callable, Sequence
 
-from mend.robots.base.base import SPARE_M, Base
+from mend.robots.base.base import Base
 from mend.robots.base.behaviors.behavior import Drive
 from mend.robots.base.behaviors.progress import BaseProgress
 from mend.robots.base.behaviors.watch import BaseWatch
 from mend.robots.base.body import BasePose
+from mend.robots.base.motion.headway import Headway
+from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import Execution
 from mend.robots.execution.execution_state import ExecutionState
 from mend.robots.execution.monitor import BEFORE_FIRST_STEP, AnyMonitor
@@ -43,6 +45,13 @@ class BaseExecution(Execution[BaseProgress]):
         left = self._progress.drives[self._driven :]
         return left[0].to if left else None
 
+    @property
+    def fraction(self) -> float:
+        following = self._base.following
+        if following is None or following.length_m <= NEAR_M:
+            return 1.0
+        return min(max(0.0, 1.0 - following.left_m / following.length_m), 1.0)
+
     def _walk(self, *, resumed: bool) -> Routine[bool]:
         progress = self._progress
         progress.step, progress.waits_since_s = BEFORE_FIRST_STEP, None
@@ -62,34 +71,40 @@ class BaseExecution(Execution[BaseProgress]):
         return False
 
     def _take(self, drive: Drive) -> Routine[None]:
-        """One drive, begun again wherever it had to stop. Raises `Interruption`."""
-        self._progress.fell_short, self._progress.driving = 0, False
+        """One drive, with waits wherever its way is barred. Raises `Interruption`."""
         self._report(StepStarted(execution=self.id, step=self.step, name=drive.name))
+        self._begin(drive)
         self._watch.check()
-        while not self._is_at(drive.to):
-            self._look_out(drive)
+        headway = Headway(self._base.body.limits.turn_rad_s)
+        while not (self._is_at(drive.to) and self._base.slow):
+            if self._base.following is not None:
+                self._drive_on(drive, headway)
             self._watch.check_if_due()
             yield
         self._base.stop()
+        yield from self._watched(self._base.settle())
         yield from self._watched(self._base.wait(drive.wait_s))
 
-    def _look_out(self, drive: Drive) -> None:
-        """Drive while nothing is in the way; stand still before what is."""
-        progress, base = self._progress, self._base
-        in_the_way_m = base.in_the_way_m(drive.to)
-        if in_the_way_m is not None and in_the_way_m < self._needed_m():
-            if progress.waits_since_s is None:
-                progress.waits_since_s, progress.driving = base.body.time_s(), False
-                base.stop()
-        elif not base.body.moving:
-            if progress.waits_since_s is None and progress.driving:
-                progress.fell_short += 1
-            progress.waits_since_s, progress.driving = None, True
-            base.start(drive.to, drive.speed)
+    def _begin(self, drive: Drive) -> None:
+        progress = self._progress
+        progress.waits_since_s, progress.stalled_s, progress.no_way = None, 0.0, None
+        try:
+            self._base.start(drive.to, drive.speed)
+        except CommandError as error:
+            progress.no_way = str(error)
 
-    def _needed_m(self) -> float:
-        """Who stands before something needs a little more room to start than who drives on."""
-        return SPARE_M if self._progress.waits_since_s is None else 2 * SPARE_M
+    def _drive_on(self, drive: Drive, headway: Headway) -> None:
+        """Drive while there is a way; stand still before what leaves none."""
+        progress, base = self._progress, self._base
+        base.drive_on()
+        following = base.following
+        assert following is not None, "it drives"
+        if not following.barred:
+            turn_rad = base.body.pose().turned_by_rad(drive.to) if following.turns_at_end else None
+            headway.note(following.left_m, turn_rad, base.pace * base.body.control_period_s)
+            progress.waits_since_s, progress.stalled_s = None, headway.stalled_s
+        elif progress.waits_since_s is None and base.slow:
+            progress.waits_since_s = base.body.time_s()
 
     def _watched(self, routine: Routine[None]) -> Routine[None]:
         for _ in routine:

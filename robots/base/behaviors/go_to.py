@@ -16,7 +16,7 @@ class GoToParameters(StrictModel):
 
 
 class GoTo(BaseBehavior):
-    """Drives straight to a place and waits before whatever stands in the way."""
+    """Drives to a place, round what stands in the way; waits where there is no way round."""
 
     name: ClassVar[str] = "go_to"
     parameters: ClassVar[type[StrictModel]] = GoToParameters

@@ -14,15 +14,14 @@ from mend.robots.execution.progress import Progress
 class BaseProgress(Progress):
     """What drives the steps and what watches them both go by.
 
-    `waits_since_s`: since when it has stood before something; None while it drives. `driving`: a
-    drive was begun and has not been stopped since. `fell_short`: so often a drive of this step has
-    ended by itself without reaching its goal.
+    `waits_since_s`: since when it has stood before something; None while it drives. `stalled_s`:
+    how long it has come no nearer, although it may move. `no_way`: why it knows no way.
     """
 
     drives: Sequence[Drive] = ()
     waits_since_s: float | None = None
-    fell_short: int = 0
-    driving: bool = False
+    stalled_s: float = 0.0
+    no_way: str | None = None
 
     @property
     def drive(self) -> Drive | None:

@@ -46,9 +46,10 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
                 phase=progress.phase,
                 pose=self._base.body.pose(),
                 goal=None if drive is None else drive.to,
-                in_the_way_m=None if drive is None else self._base.in_the_way_m(drive.to),
-                fell_short=progress.fell_short,
+                in_the_way_m=self._base.in_the_way_m(),
                 waited_s=0.0 if since_s is None else now - since_s,
+                stalled_s=progress.stalled_s,
+                no_way=progress.no_way,
                 scan=self._base.body.scan(),
             )
         )

@@ -1,4 +1,4 @@
-"""`blocked`: a base does not get on: something stands in its way, or it never quite arrives."""
+"""`blocked`: a base does not get on: something bars its way, or it never quite arrives."""
 
 import math
 from typing import Annotated, ClassVar
@@ -15,11 +15,11 @@ from mend.robots.link.messages import LASER, Detection
 class Patience(StrictModel):
     """People who pass by are not asked for anything: it waits `patience_s` first.
 
-    It tells of a goal that `tries` drives have not reached.
+    It tells of a goal to which it has come no nearer for `headway_s`.
     """
 
     patience_s: Annotated[float, Field(gt=0.0, le=600.0)] = 5.0
-    tries: Annotated[int, Field(ge=1, le=100)] = 3
+    headway_s: Annotated[float, Field(gt=0.0, le=600.0)] = 20.0
 
 
 class WayBlocked(BaseMonitor[Patience]):
@@ -32,11 +32,13 @@ class WayBlocked(BaseMonitor[Patience]):
     parameters: ClassVar[type[StrictModel]] = Patience
 
     def check(self, view: BaseView) -> Detection | None:
-        if view.goal is not None and view.fell_short >= self.settings.tries:
+        if view.no_way is not None:
+            return Detection(camera=LASER, explanation=view.no_way)
+        if view.goal is not None and view.stalled_s >= self.settings.headway_s:
             off_m, turned = view.pose.distance_m(view.goal), view.pose.turned_by_rad(view.goal)
-            short = f"I am still {off_m:.2f} m off and turned by {math.degrees(turned):.0f} degrees"
+            still = f"I am still {off_m:.2f} m off and turned by {math.degrees(turned):.0f} degrees"
             return Detection(
-                camera=LASER, explanation=f"{short} after {view.fell_short} drives there"
+                camera=LASER, explanation=f"{still}, and have come no nearer for a while"
             )
         if view.in_the_way_m is None or view.waited_s < self.settings.patience_s:
             return None

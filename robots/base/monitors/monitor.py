@@ -15,16 +15,17 @@ class BaseView(MonitorView):
     """What a base senses at one moment.
 
     `pose` is where it is and `goal` where the step under way leads, None before the first.
-    `in_the_way_m` is how far what stands in the straight way there is from its rim, None where that
-    is free; `waited_s` how long it has stood before it. `fell_short`: so often a drive of this step
-    has ended though the goal was not reached.
+    `in_the_way_m` is how far what leaves it no way on is from its rim, None where it gets on or
+    round; `waited_s` how long it has stood before it. `stalled_s`: how long it has come no nearer,
+    although nothing bars its way. `no_way`: why it knows no way to the goal.
     """
 
     pose: BasePose
     goal: BasePose | None
     in_the_way_m: float | None
     waited_s: float
-    fell_short: int
+    stalled_s: float
+    no_way: str | None
     scan: RangeScan
 
 

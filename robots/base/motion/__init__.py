@@ -1,0 +1,1 @@
+"""How a base moves along its way: what its laser shows, the way round that, and velocities."""

@@ -1,0 +1,144 @@
+"""What the laser shows around a base, and has shown: where it stands, and how fast it comes."""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mend.robots.base.body import BasePose, RangeScan
+
+Points = NDArray[np.float64]
+"""(n, 2), metres."""
+
+_NEAR_M = 6.0
+"""What is farther away is not remembered."""
+_REMEMBERED_S = 15.0
+"""What something else hides is believed to be there for so long."""
+_CELL_M = 0.05
+"""Of what is remembered one point a cell is enough."""
+_BEHIND_M = 0.1
+"""So much nearer than what is seen, or farther: an edge seen by another beam may differ by less."""
+_MOVED_S = 0.3
+"""What came to where nothing was so long ago moves."""
+_FASTEST_M_S = 1.5
+"""Nothing is believed to come faster: people walk, and robots drive, as fast."""
+_POSES = 64
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Seen:
+    """What stands around a base: `points` (n, 2), and how fast each may come, `speeds_m_s` (n,)."""
+
+    points: Points
+    speeds_m_s: NDArray[np.float64]
+
+    @classmethod
+    def still(cls, points: Points) -> Self:
+        """What does not move."""
+        return cls(points, np.zeros(len(points)))
+
+    def in_frame_of(self, pose: BasePose) -> "Seen":
+        """As a base has it that is at a pose."""
+        return Seen(in_frame_of(self.points, pose), self.speeds_m_s)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Placed:
+    """A scan, where it was made, and what it shows in the frame of that pose."""
+
+    scan: RangeScan
+    at: BasePose
+    points: Points
+
+    def range_m(self, points: Points) -> tuple[Points, Points]:
+        """How far points are from here, and how far the beams next to them see (nan: none is)."""
+        offset = in_frame_of(points, self.at)
+        angles, ranges_m = self.scan.angles_rad, self.scan.ranges_m
+        bearing = angles[0] + np.remainder(np.arctan2(*offset.T[::-1]) - angles[0], math.tau)
+        after = np.searchsorted(angles, bearing)
+        # A full circle ends where it begins.
+        closed = angles[-1] - angles[0] > math.tau - 2.0 * math.tau / len(angles)
+        beside = np.minimum(ranges_m[after - 1], ranges_m[after % len(angles)])
+        sees_m = np.where((after < len(angles)) | closed, beside, np.nan)
+        return np.hypot(*offset.T), sees_m
+
+
+class Surroundings:
+    """Takes scan after scan; what stands still is where it was, however far the base drove.
+
+    What is hidden by something else, or beside the laser's field of view, is remembered a while.
+    """
+
+    def __init__(self) -> None:
+        self._poses: deque[tuple[float, BasePose]] = deque(maxlen=_POSES)
+        self._placed: deque[_Placed] = deque()
+        self._hidden, self._hidden_since_s = np.zeros((0, 2)), np.zeros(0)
+        self.seen = Seen.still(self._hidden)
+        """In the frame of the poses."""
+
+    def take(self, scan: RangeScan, here: BasePose, time_s: float) -> Seen:
+        """Called in every control cycle, with the newest scan and where the base is now."""
+        self._poses.append((time_s, here))
+        if not self._placed or scan is not self._placed[-1].scan:
+            at = min(self._poses, key=lambda each: abs(each[0] - scan.time))[1]
+            placed = _Placed(scan, at, points_of(scan, at))
+            speeds_m_s = self._speeds_m_s(placed)
+            self._remember(placed)
+            self._placed.append(placed)
+            hidden = np.zeros(len(self._hidden))
+            self.seen = Seen(
+                np.concatenate([placed.points, self._hidden]), np.concatenate([speeds_m_s, hidden])
+            )
+        return self.seen
+
+    def _speeds_m_s(self, now: _Placed) -> NDArray[np.float64]:
+        """How fast what a scan shows may come: it is where a while ago nothing was."""
+        while len(self._placed) > 1 and self._placed[1].scan.time <= now.scan.time - _MOVED_S:
+            self._placed.popleft()
+        speeds_m_s = np.zeros(len(now.points))
+        if not self._placed or self._placed[0].scan.time > now.scan.time - _MOVED_S + 1e-9:
+            return speeds_m_s
+        before = self._placed[0]
+        away_m, saw_m = before.range_m(now.points)
+        came = np.flatnonzero((away_m < _NEAR_M) & (saw_m > away_m + _BEHIND_M))
+        if len(came) and len(before.points):
+            steps = now.points[came][:, None] - before.points[None]
+            step_m = np.sqrt((steps**2).sum(axis=2).min(axis=1))
+            speeds_m_s[came] = step_m / (now.scan.time - before.scan.time)
+        else:
+            speeds_m_s[came] = _FASTEST_M_S
+        return np.minimum(speeds_m_s, _FASTEST_M_S)
+
+    def _remember(self, now: _Placed) -> None:
+        """What the scan before showed, and was hidden then, as far as this one does not see it."""
+        if not self._placed:
+            return
+        before = self._placed[-1]
+        points = np.concatenate([before.points, self._hidden])
+        since_s = np.concatenate(
+            [np.full(len(before.points), before.scan.time), self._hidden_since_s]
+        )
+        away_m, sees_m = now.range_m(points)
+        kept = (away_m < _NEAR_M) & (since_s > now.scan.time - _REMEMBERED_S)
+        kept &= ~(sees_m > away_m - _BEHIND_M)
+        points, since_s = points[kept], since_s[kept]
+        cells = np.round(points / _CELL_M).astype(np.int64)
+        _, first = np.unique(cells[:, 0] * 1_000_003 + cells[:, 1], return_index=True)
+        self._hidden, self._hidden_since_s = points[first], since_s[first]
+
+
+def points_of(scan: RangeScan, at: BasePose) -> Points:
+    """What a scan shows (n, 2) that was made at a pose, in the pose's frame."""
+    seen = np.isfinite(scan.ranges_m)
+    ranges_m, bearings = scan.ranges_m[seen], scan.angles_rad[seen] + at.yaw
+    return np.column_stack([at.x + ranges_m * np.cos(bearings), at.y + ranges_m * np.sin(bearings)])
+
+
+def in_frame_of(points: Points, pose: BasePose) -> Points:
+    """Points (n, 2) as a base has them that is at a pose."""
+    cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
+    x, y = points[:, 0] - pose.x, points[:, 1] - pose.y
+    return np.column_stack([cos * x + sin * y, cos * y - sin * x])

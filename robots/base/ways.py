@@ -1,0 +1,25 @@
+"""The ways that a base knows: which points to pass to a pose."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from mend.robots.base.body import BasePose
+
+
+class Ways(Protocol):
+    """What knows of ways, in the base's frame on the link: a map, or none."""
+
+    def path(self, here: BasePose, to: BasePose) -> Sequence[tuple[float, float]]:
+        """The points to pass from `here`, straight from one to the next; the last is the goal's.
+
+        Raises `CommandError` where there is no way.
+        """
+        ...
+
+
+class StraightWays:
+    """The way of who knows of no walls: straight to the goal."""
+
+    def path(self, here: BasePose, to: BasePose) -> Sequence[tuple[float, float]]:  # noqa: ARG002
+        """Nothing but the goal."""
+        return [(to.x, to.y)]
