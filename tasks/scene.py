@@ -7,13 +7,13 @@ that stands alone: x forward, y left of it.
 import math
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, JsonValue
 
 from mend.documents.spellings import NAME
 from mend.documents.strict_model import StrictModel
 from mend.documents.unit import Unit
 
-Metres = Annotated[float, Field(ge=-100.0, le=100.0, allow_inf_nan=False), Unit("metres")]
+Metres = Annotated[float, Field(ge=-10_000.0, le=10_000.0, allow_inf_nan=False), Unit("metres")]
 Length = Annotated[float, Field(gt=1e-6, le=10.0, allow_inf_nan=False), Unit("metres")]
 Radians = Annotated[float, Field(ge=-6.2832, le=6.2832, allow_inf_nan=False), Unit("radians")]
 Name = Annotated[str, Field(pattern=NAME)]
@@ -84,10 +84,14 @@ class Table(StrictModel):
 
 
 class Base(StrictModel):
-    """Where a robot stands: its base frame (x forward, y left) in the scene's."""
+    """Where a robot stands: its base frame (x forward, y left) in the scene's.
+
+    `z` is the height of the floor that it stands on.
+    """
 
     x: Metres
     y: Metres
+    z: Metres = 0.0
     yaw: QuarterTurns = 0.0
 
 
@@ -99,7 +103,10 @@ class Scatter(StrictModel):
 
 
 class Scene(StrictModel):
-    """Everything that a task's leaves may name. Without `robots` one stands in the middle."""
+    """Everything that a task's leaves may name. Without `robots` one stands in the middle.
+
+    `setting`: what a kind of world needs besides, and checks itself, as a building its floors.
+    """
 
     name: Name
     table: Table = Table()
@@ -107,3 +114,4 @@ class Scene(StrictModel):
     places: dict[Name, Place]
     scatter: Scatter = Scatter()
     robots: Annotated[dict[Name, Base], Field(max_length=8)] = {}
+    setting: dict[str, JsonValue] = {}

@@ -63,7 +63,11 @@ def check_building(document: BuildingDocument) -> list[Mistake]:
 
 def building_text(document: BuildingDocument) -> str:
     """A building as YAML, a line for a place, a lane or a wall."""
-    plain = document.model_dump(mode="json", exclude_defaults=True)
+    return document_text(document.model_dump(mode="json", exclude_defaults=True))
+
+
+def document_text(plain: dict[str, Any]) -> str:
+    """A mapping as YAML: what is short in one line, everything else in a line of its own."""
     return "\n".join([*_lines(plain, 0), ""])
 
 
@@ -134,7 +138,6 @@ _PLAIN = re.compile(r"(?!true|false|null)[A-Za-z_][A-Za-z0-9_-]*", re.IGNORECASE
 
 
 def _lines(value: dict[str, Any], depth: int) -> Iterator[str]:
-    """A mapping as YAML: what is short in one line, everything else in a line of its own."""
     indent = "  " * depth
     for key, each in value.items():
         name = key if _PLAIN.fullmatch(key) else json.dumps(key, ensure_ascii=False)

@@ -12,6 +12,8 @@ from mend.robots.base.ways import Ways
 from mend.robots.execution.effector import Effector
 
 _SLOW_M_S, _SLOW_RAD_S = 0.05, 0.1
+_BEHIND_M = 0.2
+"""A door is so near to where the laser sees it, by the map."""
 
 
 class Base(Effector[BaseBody]):
@@ -76,6 +78,18 @@ class Base(Effector[BaseBody]):
         if met is not None:
             away_m = math.dist(met, (here.x, here.y))
         return max(0.0, float(away_m) - self.body.radius_m)
+
+    def door_in_the_way(self) -> str | None:
+        """The door, by its map, that leaves it no way on; None for anything else."""
+        following, here = self._following, self.body.pose()
+        if following is None or not following.barred:
+            return None
+        met = following.first_met(self._surroundings.seen.points)
+        if met is None:
+            return None
+        share = 1.0 + _BEHIND_M / max(math.dist(met, (here.x, here.y)), 1e-6)
+        beyond = here.x + share * (met[0] - here.x), here.y + share * (met[1] - here.y)
+        return self.ways.door_at(here, beyond)
 
     def gets_to(self, to: BasePose) -> bool:
         """Whether what is seen leaves a way on to a pose. Raises `CommandError`."""

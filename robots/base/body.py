@@ -15,11 +15,12 @@ from mend.robots.body import MovingBody
 
 @dataclass(frozen=True, slots=True)
 class BasePose:
-    """Where a base is in the plane (metres), and where it faces (`yaw`, radians)."""
+    """Where a base is (metres), and where it faces (`yaw`, radians); `z` is its floor's height."""
 
     x: float
     y: float
     yaw: float
+    z: float = 0.0
 
     def distance_m(self, to: "BasePose") -> float:
         """How far another pose is, whichever way it faces."""

@@ -131,4 +131,4 @@ class BaseSubsystem:
 
 
 def _pose(location: Location) -> BasePose:
-    return BasePose(location.x, location.y, location.yaw)
+    return BasePose(location.x, location.y, location.yaw, location.z or 0.0)

@@ -16,6 +16,10 @@ class Ways(Protocol):
         """
         ...
 
+    def door_at(self, here: BasePose, ahead: tuple[float, float]) -> str | None:
+        """The door between a pose and a point ahead; None where there is none."""
+        ...
+
 
 class StraightWays:
     """The way of who knows of no walls: straight to the goal."""
@@ -23,3 +27,7 @@ class StraightWays:
     def path(self, here: BasePose, to: BasePose) -> Sequence[tuple[float, float]]:  # noqa: ARG002
         """Nothing but the goal."""
         return [(to.x, to.y)]
+
+    def door_at(self, here: BasePose, ahead: tuple[float, float]) -> str | None:  # noqa: ARG002
+        """None: it knows of no doors."""
+        return None

@@ -1,5 +1,6 @@
 """`mend building`: import, make up, check and draw buildings."""
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -105,6 +106,32 @@ def draw(
             path = folder / f"{name}.svg"
             path.write_text(floor_picture(building, name), encoding="utf-8")
             typer.echo(path)
+
+
+@app.command("scene", short_help="Make a scene of a building, with robots in it.")
+def scene(
+    file: BuildingFile,
+    output: OutputFile,
+    robots: Annotated[int, typer.Option(min=1, max=8, help="How many robots are in it.")] = 1,
+) -> None:
+    """Write a scene file that task files can name: the building, its places, and robots in it.
+
+    Robots begin at chargers, or where they park, one on each floor first.
+    """
+    from mend.documents.problem import list_names
+    from mend.documents.spellings import NAME, SPELLINGS
+    from mend.maps.building.building_file import document_text, read_building_file
+    from mend.sim.building.scene import scene_of
+
+    with told_plainly():
+        name = output.stem
+        if not re.fullmatch(NAME, name):
+            raise CommandLineError(f"a scene is called after its file: '{name}' {SPELLINGS[NAME]}")
+        made = scene_of(read_building_file(file), name, robots)
+        output.parent.mkdir(parents=True, exist_ok=True)
+        text = document_text(made.model_dump(mode="json", exclude_defaults=True))
+        output.write_text(text, encoding="utf-8")
+    typer.echo(f"{output}: {list_names(made.robots)} among {len(made.places)} places")
 
 
 def _from_rmf(plan: Path, graphs: list[int]) -> "Imported":

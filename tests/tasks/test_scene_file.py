@@ -48,7 +48,7 @@ def test_every_mistake_is_told_with_its_line() -> None:
     lines = told(text)
     assert lines == [
         "s:2: unknown key 'light'; known are 'name', 'objects', 'places', 'robots', 'scatter', "
-        "'table'",
+        "'setting', 'table'",
         "s:5: 'objects.cup.color.1' must be less than or equal to 1, but it is 2",
         "s:7: 'objects.cup.pose.x' must be a number (in metres), but it is \"left\"",
         "s:9: 'places.7th' must be a name: a letter, then at most 63 letters, digits, '_' or '-', "

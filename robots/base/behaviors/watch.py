@@ -47,6 +47,7 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
                 pose=self._base.body.pose(),
                 goal=None if drive is None else drive.to,
                 in_the_way_m=self._base.in_the_way_m(),
+                door=self._base.door_in_the_way(),
                 waited_s=0.0 if since_s is None else now - since_s,
                 stalled_s=progress.stalled_s,
                 no_way=progress.no_way,

@@ -40,7 +40,8 @@ class WayBlocked(BaseMonitor[Patience]):
             return Detection(
                 camera=LASER, explanation=f"{still}, and have come no nearer for a while"
             )
-        if view.in_the_way_m is None or view.waited_s < self.settings.patience_s:
+        told_otherwise = view.in_the_way_m is None or view.door is not None
+        if told_otherwise or view.waited_s < self.settings.patience_s:
             return None
         standing = f"something has stood {view.in_the_way_m:.1f} m in front of me"
         return Detection(camera=LASER, explanation=f"{standing} for {view.waited_s:.0f} s")

@@ -16,13 +16,15 @@ class BaseView(MonitorView):
 
     `pose` is where it is and `goal` where the step under way leads, None before the first.
     `in_the_way_m` is how far what leaves it no way on is from its rim, None where it gets on or
-    round; `waited_s` how long it has stood before it. `stalled_s`: how long it has come no nearer,
-    although nothing bars its way. `no_way`: why it knows no way to the goal.
+    round, and `door` what its map calls that, if it is a door; `waited_s` how long it has stood
+    before it. `stalled_s`: how long it has come no nearer, although nothing bars its way. `no_way`:
+    why it knows no way to the goal.
     """
 
     pose: BasePose
     goal: BasePose | None
     in_the_way_m: float | None
+    door: str | None
     waited_s: float
     stalled_s: float
     no_way: str | None

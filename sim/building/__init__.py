@@ -1,0 +1,1 @@
+"""The world `building`: floors with doors, people, and robots that drive."""

@@ -1,0 +1,61 @@
+"""A door of the world: open or shut, by itself or by people."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mend.maps.building.building import Door, DoorOpening
+
+Point = tuple[float, float]
+
+_NOTICES_M = 1.8
+"""A door that opens itself does so when somebody is so near."""
+_STAYS_OPEN_S = 4.0
+"""After the last one has gone by."""
+
+
+@dataclass(slots=True)
+class WorldDoor:
+    """`name`: `FLOOR/DOOR`; `is_shut` where it cannot be passed.
+
+    `shuts_s`: when it falls shut if nobody is there; inf for one that somebody left open.
+    """
+
+    name: str
+    plan: Door
+    is_shut: bool
+    shuts_s: float = math.inf
+
+    @property
+    def segment(self) -> tuple[float, float, float, float]:
+        """From post to post."""
+        return (*self.plan.posts[0], *self.plan.posts[1])
+
+    def distance_m(self, x: float, y: float) -> float:
+        """How far a point is from the line between the posts."""
+        (x0, y0), (x1, y1) = self.plan.posts
+        along = np.array([x1 - x0, y1 - y0])
+        share = np.clip(np.array([x - x0, y - y0]) @ along / (along @ along), 0.0, 1.0)
+        return math.hypot(x - x0 - share * along[0], y - y0 - share * along[1])
+
+    def may_be_passed(self, time_s: float) -> bool:
+        """Whether it is one of the times at which it is not locked."""
+        spans = self.plan.open_s
+        return not spans or any(opens <= time_s < shuts for opens, shuts in spans)
+
+    def let_pass(self, time_s: float, near: Iterable[Point]) -> None:
+        """One cycle: open for who comes, shut behind them; nothing shuts on anybody."""
+        somebody = any(self.distance_m(*each) < _NOTICES_M for each in near)
+        if not self.may_be_passed(time_s):
+            self.is_shut = self.is_shut or not somebody
+            return
+        if somebody and self.plan.opens is DoorOpening.ITSELF:
+            self.hold_open(time_s + _STAYS_OPEN_S)
+        elif not self.is_shut and not somebody and time_s >= self.shuts_s:
+            self.is_shut = True
+
+    def hold_open(self, until_s: float) -> None:
+        """It is open, and does not fall shut before then."""
+        self.is_shut, self.shuts_s = False, until_s

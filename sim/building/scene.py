@@ -1,0 +1,78 @@
+"""A scene of a building: what tasks may name in it, and where robots begin."""
+
+import math
+import re
+
+from mend.errors import WrongInputError
+from mend.maps.building.building import Building, FloorPlace, PlaceKind
+from mend.tasks.scene import Base, Place, Pose, Scene
+
+APART_M = 1.0
+"""Robots begin so far from each other."""
+_ODD = re.compile(r"[^A-Za-z0-9_-]")
+_BEGINS = (PlaceKind.CHARGER, PlaceKind.PARKING, PlaceKind.WAYPOINT)
+"""Where robots begin, the first kind first."""
+_LONGEST = 64
+
+
+def scene_of(building: Building, name: str, robots: int) -> Scene:
+    """A scene with all places that are not on the way only, and so many robots.
+
+    A place is called after its floor and itself, as `F1-101`. Raises `WrongInputError` where there
+    is no room for all robots.
+    """
+    places = {
+        scene_name(full): Place(pose=_pose(building, full))
+        for kind in PlaceKind
+        if kind is not PlaceKind.WAYPOINT
+        for full in building.of_kind(kind)
+    }
+    begins = _begins(building, robots)
+    return Scene(
+        name=name,
+        objects={},
+        places=places,
+        robots={f"robot{number}": base for number, base in enumerate(begins, 1)},
+        setting=building.document.model_dump(mode="json", exclude_defaults=True),
+    )
+
+
+def scene_name(full: str) -> str:
+    """What a place, `FLOOR/PLACE`, is called in scenes, whose names are plainer."""
+    name = _ODD.sub("_", full.replace("/", "-"))
+    return (name if name[0].isalpha() else f"L{name}")[:_LONGEST]
+
+
+def _begins(building: Building, robots: int) -> list[Base]:
+    """At chargers of different floors first."""
+    begins: list[Base] = []
+    for kind in _BEGINS:
+        for full in _by_turns(building.of_kind(kind)):
+            pose = _pose(building, full)
+            base = Base(x=pose.x, y=pose.y, z=pose.z or 0.0)
+            if len(begins) < robots and all(_far(base, each) for each in begins):
+                begins.append(base)
+    if len(begins) < robots:
+        raise WrongInputError(
+            f"'{building.name}' has room for {len(begins)} robots at its places, not {robots}"
+        )
+    return begins
+
+
+def _by_turns(places: list[str]) -> list[str]:
+    """The first of each floor, then the second of each, and so on."""
+    floors: dict[str, list[str]] = {}
+    for each in places:
+        floors.setdefault(each.split("/", 1)[0], []).append(each)
+    longest = max((len(each) for each in floors.values()), default=0)
+    return [each[turn] for turn in range(longest) for each in floors.values() if turn < len(each)]
+
+
+def _far(a: Base, b: Base) -> bool:
+    return a.z != b.z or math.hypot(a.x - b.x, a.y - b.y) >= APART_M
+
+
+def _pose(building: Building, full: str) -> Pose:
+    floor, name = full.split("/", 1)
+    place: FloorPlace = building.floors[floor].places[name]
+    return Pose(x=place.x, y=place.y, z=building.floors[floor].height)

@@ -1,0 +1,254 @@
+"""A building as it really is: its doors, the people in it, and robots that drive."""
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mend.documents.strict_model import StrictModel
+from mend.maps.building.building import Building, DoorOpening
+from mend.maps.building.clearance import distances_m
+from mend.robots.base.body import RangeScan
+from mend.sim.building import laser
+from mend.sim.building.building_robot import PERIOD_S, BuildingRobot, FloorPose, Senses
+from mend.sim.building.door import WorldDoor
+from mend.sim.building.pedestrian import RADIUS_M as PERSON_RADIUS_M
+from mend.sim.building.pedestrian import Pedestrian
+from mend.tasks.frames import Frame
+from mend.tasks.intervention import Act, Intervention
+
+Circle = tuple[float, float, float]
+
+_IN_FRONT_M = 0.6
+"""So far from a robot's rim somebody stands who steps in its way."""
+_AT_DOOR_M = 2.5
+"""Who is asked to open a door opens one that is so near to a robot."""
+_HELD_OPEN_S = 30.0
+"""What people opened for a robot falls shut after so long, once nobody is there."""
+_KEEPS_M = 0.15
+"""People stop so far before what stands there."""
+
+
+class WorldSnapshot(StrictModel):
+    """What a building is rebuilt from. Poses are floor, x, y, yaw."""
+
+    time_s: float
+    robots: list[tuple[str, float, float, float]]
+    shut: dict[str, tuple[bool, float]]
+    people: list[tuple[str, float, float, float, list[tuple[float, float]], bool]]
+
+
+class BuildingWorld:
+    """Implements `mend.sim.world.World`.
+
+    `touches` counts the cycles in which a robot drove against something, or somebody.
+    """
+
+    def __init__(
+        self,
+        building: Building,
+        starts: Iterable[tuple[Frame, FloorPose]],
+        shut_doors: float,
+        rng: np.random.Generator,
+    ) -> None:
+        """`shut_doors`: the share of those that people open that is shut at first."""
+        self.building = building
+        self.touches = 0
+        self._time_s = 0.0
+        self._people: list[Pedestrian] = []
+        self._in_the_way: list[Pedestrian] = []
+        self._doors = {
+            f"{floor}/{name}": WorldDoor(
+                f"{floor}/{name}",
+                plan,
+                plan.opens is DoorOpening.ITSELF or bool(rng.random() < shut_doors),
+            )
+            for floor, each in building.floors.items()
+            for name, plan in each.doors.items()
+        }
+        self._walls = {
+            name: np.array(each.walls, np.float64).reshape(-1, 4)
+            for name, each in building.floors.items()
+        }
+        self._scans: dict[int, RangeScan] = {}
+        senses = Senses(self.time_s, self._height_m, self._scan, self.advance_cycle)
+        self.robots = [BuildingRobot(*start, senses) for start in starts]
+
+    # --- Time ---
+
+    def time_s(self) -> float:
+        return self._time_s
+
+    def advance_cycle(self) -> None:
+        self._time_s += PERIOD_S
+        for door in self._doors.values():
+            floor = door.name.split("/", 1)[0]
+            door.let_pass(self._time_s, [(x, y) for x, y, _ in self._round_things(floor)])
+        for person in self.people:
+            self._walk(person)
+        for robot in self.robots:
+            self._drive(robot)
+
+    def _walk(self, person: Pedestrian) -> None:
+        wanted = person.next_pose(PERIOD_S)
+        others = self._circles(wanted.floor, person)
+        if not _is_near(wanted, others, PERSON_RADIUS_M + _KEEPS_M):
+            person.take(wanted)
+
+    def _drive(self, robot: BuildingRobot) -> None:
+        wanted = robot.next_pose()
+        if wanted == robot.at:
+            return
+        if self._touches(robot, wanted):
+            self.touches += 1
+            robot.bump()
+        else:
+            robot.at = wanted
+
+    def _touches(self, robot: BuildingRobot, at: FloorPose) -> bool:
+        if _is_near(at, self._circles(at.floor, robot), robot.radius_m):
+            return True
+        away_m = distances_m(np.array([[at.x, at.y]]), self._segments(at.floor))
+        return bool(away_m[0] < robot.radius_m)
+
+    # --- What there is ---
+
+    @property
+    def people(self) -> Sequence[Pedestrian]:
+        """All, those in the way of robots among them."""
+        return [*self._people, *self._in_the_way]
+
+    @property
+    def doors(self) -> Mapping[str, WorldDoor]:
+        """By `FLOOR/DOOR`."""
+        return self._doors
+
+    def let_in(self, person: Pedestrian) -> None:
+        """Somebody is there from now on."""
+        self._people.append(person)
+
+    def _height_m(self, floor: str) -> float:
+        return self.building.floors[floor].height
+
+    def _circles(self, floor: str, but: object) -> list[Circle]:
+        """Robots and people on a floor."""
+        there: list[tuple[object, FloorPose, float]] = [
+            *((each, each.at, each.radius_m) for each in self.robots),
+            *((each, each.at, PERSON_RADIUS_M) for each in self.people),
+        ]
+        return [
+            (at.x, at.y, radius)
+            for each, at, radius in there
+            if each is not but and at.floor == floor
+        ]
+
+    def _round_things(self, floor: str) -> list[Circle]:
+        return self._circles(floor, None)
+
+    def _segments(self, floor: str) -> NDArray[np.float64]:
+        """Walls and shut doors."""
+        shut = [
+            each.segment
+            for each in self._doors.values()
+            if each.is_shut and each.name.startswith(f"{floor}/")
+        ]
+        return np.vstack([self._walls[floor], np.array(shut, np.float64).reshape(-1, 4)])
+
+    def _scan(self, robot: BuildingRobot) -> RangeScan:
+        """The newest, at the laser's period."""
+        kept = self._scans.get(id(robot))
+        if kept is not None and self._time_s - kept.time < laser.PERIOD_S - 1e-9:
+            return kept
+        at = robot.at
+        ranges = laser.ranges_m(
+            self._segments(at.floor), self._circles(at.floor, robot), at.x, at.y, at.yaw
+        )
+        scan = self._scans[id(robot)] = RangeScan(ranges, laser.ANGLES_RAD, self._time_s)
+        return scan
+
+    # --- People who act ---
+
+    def intervene(self, intervention: Intervention) -> str:
+        """Somebody steps before the first robot that drives, or makes way and opens the door."""
+        match intervention.act:
+            case Act.BLOCK:
+                return self._step_in_the_way()
+            case Act.RELEASE:
+                return self._make_way()
+            case act:
+                return f"there is nothing in a building for which anybody could do '{act}'"
+
+    def _step_in_the_way(self) -> str:
+        driving = next((each for each in self.robots if each.moving), None)
+        if driving is None:
+            return "nobody stands in the way of robots that stand"
+        at, ahead_m = driving.at, driving.radius_m + PERSON_RADIUS_M + _IN_FRONT_M
+        now = driving.velocity()
+        heading = at.yaw + math.atan2(now.left_m_s, now.forward_m_s)
+        x, y = at.x + ahead_m * math.cos(heading), at.y + ahead_m * math.sin(heading)
+        self._in_the_way.append(Pedestrian(FloorPose(at.floor, x, y)))
+        return ""
+
+    def _make_way(self) -> str:
+        stepped_aside = bool(self._in_the_way)
+        self._in_the_way.clear()
+        opened = self._open_for_who_waits()
+        return "" if stepped_aside or opened else "nothing is in the way of any robot"
+
+    def _open_for_who_waits(self) -> bool:
+        opened = False
+        for robot in self.robots:
+            near = [
+                (each.distance_m(robot.at.x, robot.at.y), each)
+                for each in self._doors.values()
+                if each.is_shut
+                and each.name.startswith(f"{robot.at.floor}/")
+                and each.may_be_passed(self._time_s)
+            ]
+            distance_m, door = min(near, key=lambda each: each[0], default=(math.inf, None))
+            if door is not None and distance_m < _AT_DOOR_M and not robot.moving:
+                door.hold_open(self._time_s + _HELD_OPEN_S)
+                opened = True
+        return opened
+
+    # --- What it is rebuilt from ---
+
+    def snapshot(self) -> dict[str, Any]:
+        kept = WorldSnapshot(
+            time_s=self._time_s,
+            robots=[(e.at.floor, e.at.x, e.at.y, e.at.yaw) for e in self.robots],
+            shut={name: (each.is_shut, each.shuts_s) for name, each in self._doors.items()},
+            people=[
+                (e.at.floor, e.at.x, e.at.y, e.at.yaw, list(e.goals), e in self._in_the_way)
+                for e in self.people
+            ],
+        )
+        return kept.model_dump(mode="json")
+
+    def restore(self, snapshot: dict[str, Any]) -> None:
+        """Raises `ValueError` for one that does not fit."""
+        kept = WorldSnapshot.model_validate_json(json.dumps(snapshot))
+        if len(kept.robots) != len(self.robots):
+            raise ValueError(f"expected {len(self.robots)} robots, got {len(kept.robots)}")
+        if kept.shut.keys() != self._doors.keys():
+            raise ValueError("the snapshot has other doors than the building")
+        self._time_s = kept.time_s
+        self._scans.clear()
+        for robot, at in zip(self.robots, kept.robots, strict=True):
+            robot.stand(FloorPose(*at))
+        for name, (is_shut, shuts_s) in kept.shut.items():
+            self._doors[name].is_shut, self._doors[name].shuts_s = is_shut, shuts_s
+        self._people, self._in_the_way = [], []
+        for floor, x, y, yaw, goals, in_the_way in kept.people:
+            person = Pedestrian(FloorPose(floor, x, y, yaw), tuple(goals))
+            (self._in_the_way if in_the_way else self._people).append(person)
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
+def _is_near(at: FloorPose, circles: Iterable[Circle], radius_m: float) -> bool:
+    return any(math.hypot(x - at.x, y - at.y) < radius + radius_m for x, y, radius in circles)
