@@ -65,8 +65,8 @@ DEEDS: dict[Act, str] = {
     Act.PLACE: "puts {object} to its place",
     Act.HAND_OVER: "hands {object} over",
     Act.MOVE: "moves {object}",
-    Act.BLOCK: "stands in the arm's way",
-    Act.RELEASE: "gets out of the arm's way",
+    Act.BLOCK: "stands in the robot's way",
+    Act.RELEASE: "gets out of the robot's way",
     Act.COVER: "covers the head camera",
     Act.UNCOVER: "clears the head camera's view",
 }

@@ -20,13 +20,13 @@ _STAYS_OPEN_S = 4.0
 class WorldDoor:
     """`name`: `FLOOR/DOOR`; `is_shut` where it cannot be passed.
 
-    `shuts_s`: when it falls shut if nobody is there; inf for one that somebody left open.
+    `shuts_s`: when it falls shut if nobody is there; None for one that somebody left open.
     """
 
     name: str
     plan: Door
     is_shut: bool
-    shuts_s: float = math.inf
+    shuts_s: float | None = None
 
     @property
     def segment(self) -> tuple[float, float, float, float]:
@@ -53,7 +53,7 @@ class WorldDoor:
             return
         if somebody and self.plan.opens is DoorOpening.ITSELF:
             self.hold_open(time_s + _STAYS_OPEN_S)
-        elif not self.is_shut and not somebody and time_s >= self.shuts_s:
+        elif self.shuts_s is not None and not somebody and time_s >= self.shuts_s:
             self.is_shut = True
 
     def hold_open(self, until_s: float) -> None:

@@ -37,7 +37,7 @@ class WorldSnapshot(StrictModel):
 
     time_s: float
     robots: list[tuple[str, float, float, float]]
-    shut: dict[str, tuple[bool, float]]
+    doors: dict[str, tuple[bool, float | None]]
     people: list[tuple[str, float, float, float, list[tuple[float, float]], bool]]
 
 
@@ -220,7 +220,7 @@ class BuildingWorld:
         kept = WorldSnapshot(
             time_s=self._time_s,
             robots=[(e.at.floor, e.at.x, e.at.y, e.at.yaw) for e in self.robots],
-            shut={name: (each.is_shut, each.shuts_s) for name, each in self._doors.items()},
+            doors={name: (each.is_shut, each.shuts_s) for name, each in self._doors.items()},
             people=[
                 (e.at.floor, e.at.x, e.at.y, e.at.yaw, list(e.goals), e in self._in_the_way)
                 for e in self.people
@@ -233,13 +233,13 @@ class BuildingWorld:
         kept = WorldSnapshot.model_validate_json(json.dumps(snapshot))
         if len(kept.robots) != len(self.robots):
             raise ValueError(f"expected {len(self.robots)} robots, got {len(kept.robots)}")
-        if kept.shut.keys() != self._doors.keys():
+        if kept.doors.keys() != self._doors.keys():
             raise ValueError("the snapshot has other doors than the building")
         self._time_s = kept.time_s
         self._scans.clear()
         for robot, at in zip(self.robots, kept.robots, strict=True):
             robot.stand(FloorPose(*at))
-        for name, (is_shut, shuts_s) in kept.shut.items():
+        for name, (is_shut, shuts_s) in kept.doors.items():
             self._doors[name].is_shut, self._doors[name].shuts_s = is_shut, shuts_s
         self._people, self._in_the_way = [], []
         for floor, x, y, yaw, goals, in_the_way in kept.people:

@@ -76,6 +76,7 @@ class Surroundings:
         self._poses: deque[tuple[float, BasePose]] = deque(maxlen=_POSES)
         self._placed: deque[_Placed] = deque()
         self._hidden, self._hidden_since_s = np.zeros((0, 2)), np.zeros(0)
+        self._still = np.zeros(0, np.bool_)
         self.seen = Seen.still(self._hidden)
         """In the frame of the poses."""
 
@@ -87,6 +88,7 @@ class Surroundings:
             placed = _Placed(scan, at, points_of(scan, at))
             speeds_m_s = self._speeds_m_s(placed)
             self._remember(placed)
+            self._still = speeds_m_s == 0.0
             self._placed.append(placed)
             hidden = np.zeros(len(self._hidden))
             self.seen = Seen(
@@ -117,10 +119,10 @@ class Surroundings:
         if not self._placed:
             return
         before = self._placed[-1]
-        points = np.concatenate([before.points, self._hidden])
-        since_s = np.concatenate(
-            [np.full(len(before.points), before.scan.time), self._hidden_since_s]
-        )
+        # What moves is not where it was.
+        stood = before.points[self._still]
+        points = np.concatenate([stood, self._hidden])
+        since_s = np.concatenate([np.full(len(stood), before.scan.time), self._hidden_since_s])
         away_m, sees_m = now.range_m(points)
         kept = (away_m < _NEAR_M) & (since_s > now.scan.time - _REMEMBERED_S)
         kept &= ~(sees_m > away_m - _BEHIND_M)

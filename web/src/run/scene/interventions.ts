@@ -40,8 +40,8 @@ const OFFERS_FOR_HEAD: Offer[] = [
 
 function offersForArm({ blocked }: ArmTarget): Offer[] {
   return blocked
-    ? [{ label: "Release", hint: "Get out of the arm’s way", act: { act: "release" } }]
-    : [{ label: "Block", hint: "Stand in the arm’s way", act: { act: "block" } }];
+    ? [{ label: "Release", hint: "Get out of the robot’s way", act: { act: "release" } }]
+    : [{ label: "Block", hint: "Stand in the robot’s way", act: { act: "block" } }];
 }
 
 function offersForObject({ name: object, held, gone }: ObjectTarget, places: readonly string[]): Offer[] {
@@ -68,8 +68,8 @@ const DONE: Readonly<Record<Intervention["act"], (object: string) => string>> = 
   place: (object) => `The ${object} is placed.`,
   hand_over: (object) => `The ${object} is held out to the robot.`,
   move: (object) => `The ${object} is moved.`,
-  block: () => "Somebody stands in the arm’s way.",
-  release: () => "The arm’s way is free.",
+  block: () => "Somebody stands in the robot’s way.",
+  release: () => "The robot’s way is free.",
   cover: () => "The head camera is covered.",
   uncover: () => "The head camera’s view is clear.",
 };

@@ -1,0 +1,70 @@
+"""What is wrong with a scene of a building is told in a sentence, with where it is."""
+
+from typing import Any
+
+from building_bench import made_up
+
+from mend.sim.building.buildings import BUILDINGS
+from mend.sim.building.scene import scene_name, scene_of
+from mend.tasks.definition import BehaviorNode
+from mend.tasks.scene import Base, Place, Pose, Scene
+
+
+def told(scene: Scene, *nodes: BehaviorNode) -> list[tuple[tuple[str, ...], str]]:
+    return [(each.where, each.message) for each in BUILDINGS.check_scene(scene, nodes)]
+
+
+def changed(**changes: Any) -> Scene:
+    return scene_of(made_up(), "office", 1).model_copy(update=changes)
+
+
+def test_what_is_made_of_a_building_has_no_mistake() -> None:
+    for seed in range(8):
+        assert not told(scene_of(made_up(floors=3, rooms=12, seed=seed), "office", 3))
+
+
+def test_a_scene_without_a_building_is_told_how_to_get_one() -> None:
+    ((where, message),) = told(changed(setting={}))
+    assert where == ("setting",)
+    assert "mend building scene" in message
+
+
+def test_mistakes_of_the_building_are_told_as_those_of_its_file() -> None:
+    setting = scene_of(made_up(), "office", 1).setting
+    ((where, message),) = told(changed(setting={**setting, "lifts": {}}))
+    assert where == ("setting", "lifts")
+    assert "unknown key 'lifts'" in message
+
+
+def test_floors_are_told_apart_by_their_heights() -> None:
+    setting: Any = scene_of(made_up(floors=2), "office", 1).setting
+    setting["floors"]["F2"].pop("height")
+    ((where, message),) = told(changed(setting=setting, places={}))
+    assert where == ("setting", "floors", "F2", "height")
+    assert "how high each of them is" in message
+
+
+def test_what_stands_on_no_floor_or_in_a_wall_is_told() -> None:
+    scene = changed(
+        robots={"high": Base(x=1.3, y=0.0, z=9.0)},
+        places={"in_wall": Place(pose=Pose(x=0.0, y=0.0, z=0.0))},
+    )
+    problems = dict(told(scene))
+    assert "no floor is 9 m high" in problems["robots", "high", "z"]
+    assert "a wall is 0.00 m from here" in problems["places", "in_wall", "pose"]
+
+
+def test_what_no_base_can_do_is_told_once() -> None:
+    lift = BehaviorNode(
+        parent=None,
+        name="lift",
+        behavior="pick_and_place",
+        parameters={"object": "cup", "place": "F1-101"},
+    )
+    ((_, message),) = told(changed(), lift, lift)
+    assert message.startswith("no robot of a building can do 'pick_and_place'")
+
+
+def test_names_of_places_become_names_of_scenes() -> None:
+    assert scene_name("F1/101") == "F1-101"
+    assert scene_name("1/tea room") == "L1-tea_room"

@@ -1,0 +1,118 @@
+"""Robots drive through a building, stop before people and shut doors, and touch nothing."""
+
+import json
+import math
+
+import pytest
+from building_bench import BuildingBench, made_up
+
+from mend.robots.link.messages import Finished, IssueDetected, Look, Looked, Rejected, Resume
+from mend.sim.building.scene import scene_of
+from mend.tasks.intervention import Act, Intervention
+
+AWAY = Intervention(act=Act.RELEASE)
+
+
+def rooms(bench: BuildingBench) -> list[str]:
+    return sorted(each for each in bench.scene.places if each.startswith("F1-1"))
+
+
+def test_a_robot_goes_to_every_room_and_touches_nothing() -> None:
+    bench = BuildingBench()
+    for room in rooms(bench):
+        bench.go("robot1", room)
+        bench.run()
+        at, pose = bench.world.robots[0].at, bench.scene.places[room].pose
+        assert math.hypot(at.x - pose.x, at.y - pose.y) < 0.06
+    assert len(bench.of(Finished)) == len(rooms(bench))
+    assert bench.world.touches == 0
+
+
+def test_a_shut_door_is_named_and_opened_by_who_is_asked() -> None:
+    bench = BuildingBench(shut_doors=1.0)
+    by_hand = [
+        name for name, each in bench.world.doors.items() if each.plan.opens.value == "people"
+    ]
+    room = by_hand[0].replace("/", "-")
+    bench.go("robot1", room)
+    issue = bench.run_until(IssueDetected)
+    assert issue.issue == "door_closed"
+    assert issue.detection is not None
+    assert by_hand[0].split("/")[1] in issue.detection.explanation
+    bench.run()
+    assert bench.world.intervene(AWAY) == ""
+    bench.send("robot1", Look(expect="way_clear", within_s=5.0))
+    bench.run()
+    assert bench.of(Looked)[-1].fulfilled
+    bench.send("robot1", Resume(execution=issue.execution))
+    bench.run()
+    assert bench.of(Finished)
+    assert bench.world.touches == 0
+
+
+def test_nobody_says_that_a_door_is_open_that_is_shut() -> None:
+    bench = BuildingBench(shut_doors=1.0)
+    shut = next(n for n, each in bench.world.doors.items() if each.plan.opens.value == "people")
+    bench.go("robot1", shut.replace("/", "-"))
+    bench.run_until(IssueDetected)
+    bench.run()
+    bench.send("robot1", Look(expect="way_clear", within_s=3.0))
+    bench.run()
+    assert bench.of(Looked)[-1].fulfilled is False
+
+
+def test_robots_on_one_floor_pass_each_other_without_touching() -> None:
+    bench = BuildingBench(scene_of(made_up(rooms=8), "office", 3), seed=2)
+    names = sorted(each for each in bench.scene.places if each.startswith("F1-1"))
+    for turn in range(3):
+        for number, robot in enumerate(bench.scene.robots):
+            bench.go(robot, names[(turn * 3 + number * 2) % len(names)])
+        bench.run()
+    assert bench.world.touches == 0
+    assert len(bench.of(Finished)) == 9
+
+
+def test_another_floor_is_refused_in_a_sentence() -> None:
+    bench = BuildingBench(scene_of(made_up(floors=2), "office", 1))
+    bench.go("robot1", next(each for each in bench.scene.places if each.startswith("F2-2")))
+    bench.run()
+    assert bench.of(Rejected)[-1].reason == "I am on F1, and that is on F2"
+
+
+def test_the_same_seed_is_the_same_building() -> None:
+    ends = []
+    for seed in (5, 5):
+        bench = BuildingBench(shut_doors=0.5, seed=seed)
+        bench.go("robot1", rooms(bench)[0])
+        bench.run()
+        ends.append(bench.world.snapshot())
+    assert ends[0] == ends[1]
+
+
+def test_a_snapshot_is_gone_on_from() -> None:
+    bench = BuildingBench(shut_doors=0.5)
+    bench.go("robot1", rooms(bench)[1])
+    for _ in range(60):
+        bench.group.advance(0.05)
+    kept = json.loads(json.dumps(bench.world.snapshot(), allow_nan=False))
+    other = BuildingBench(shut_doors=0.5, seed=9)
+    other.world.restore(kept)
+    assert other.world.snapshot() == kept
+    with pytest.raises(ValueError, match="expected 2 robots, got 1"):
+        BuildingBench(robots=2).world.restore(kept)
+
+
+def test_people_do_what_can_be_done_in_a_building() -> None:
+    bench = BuildingBench()
+    block = Intervention(act=Act.BLOCK)
+    assert bench.world.intervene(block) == "nobody stands in the way of robots that stand"
+    assert bench.world.intervene(AWAY) == "nothing is in the way of any robot"
+    bench.go("robot1", rooms(bench)[0])
+    for _ in range(30):
+        bench.group.advance(0.05)
+    assert bench.world.intervene(block) == ""
+    assert len(bench.world.people) == 1
+    bench.run()
+    assert bench.world.touches == 0
+    steal = Intervention(act=Act.COVER)
+    assert "nothing in a building" in bench.world.intervene(steal)
