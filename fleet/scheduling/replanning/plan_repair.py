@@ -244,7 +244,10 @@ class PlanRepair:
             sales.append(sale)
             if hard and easy:
                 sales.append(self._auction(hard, way, easy))
-        best = min(sales, key=lambda sale: (len(sale.unsold), self._cost(sale)))
+        fewest = min(len(sale.unsold) for sale in sales)
+        # Each cost takes a schedule of everything, so nothing is timed that has no rival.
+        rivals = list(dict.fromkeys(sale for sale in sales if len(sale.unsold) == fewest))
+        best = min(rivals, key=self._cost) if len(rivals) > 1 else rivals[0]
         self.routes = list(best.routes)
         self._begun = {item: k for item, k in self._begun.items() if item in best.unsold}
         return best.unsold
