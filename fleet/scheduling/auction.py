@@ -13,7 +13,7 @@ from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.partial_routes import part_schedule
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Route, Schedule
-from mend.fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.solution import Progress, Solution, unproved
 
 ATTEMPTS = 8
 """How many auctions are held, with transfers and without: each offers first what had no place."""
@@ -72,13 +72,6 @@ def sell(
     return Sale(growing.routes, (*unsold, *left))
 
 
-def offer(
-    problem: Problem, routes: Sequence[Route], item: int, *, held: Sequence[int] | None = None
-) -> Sale:
-    """One more item for robots that have routes already: online, nothing else is moved."""
-    return sell(problem, routes, (item,), held=held)
-
-
 def solve_by_auction(
     problem: Problem,
     *,
@@ -107,9 +100,7 @@ def solve_by_auction(
             if on_progress is not None:
                 on_progress(Progress(best_cost, None, clock() - began_s))
         first[kind] = _next_first(problem, first[kind], sale.unsold, chance)
-    if best is None:
-        return Solution(Status.UNKNOWN, None, None, None, clock() - began_s)
-    return Solution(Status.FEASIBLE, best, cost(problem, best), None, clock() - began_s)
+    return unproved(problem, best, clock() - began_s)
 
 
 def _auction(

@@ -3,18 +3,17 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from mend.fleet.scheduling.auction import sell
-from mend.fleet.scheduling.constraint import Constraint, sentence
+from mend.fleet.scheduling.constraint import Constraint
 from mend.fleet.scheduling.partial_routes import items_in
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Route
 from mend.fleet.scheduling.temporal_network import Conflict
-from mend.fleet.scheduling.timing import TimedRoutes
+from mend.fleet.scheduling.timing import TimedRoutes, Untimeable
 
 
 def conflict_words(problem: Problem, conflict: Conflict[Constraint]) -> str:
     """Which constraints cannot hold together."""
-    words = "; ".join(sentence(problem, each) for each in conflict.reasons)
-    return f"these cannot hold together: {words}"
+    return Untimeable(conflict.reasons).sentence(problem)
 
 
 def no_place_words(problem: Problem, item: int, conflict: Conflict[Constraint] | None) -> str:

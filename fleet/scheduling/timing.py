@@ -4,9 +4,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
-from math import inf
 
-from mend.fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
+from mend.fleet.scheduling.constraint import Constraint, ConstraintKind, sentences
 from mend.fleet.scheduling.itinerary import ItineraryLeg, itineraries
 from mend.fleet.scheduling.problem import Problem, Window
 from mend.fleet.scheduling.schedule import Action, RobotSchedule, Route, Schedule, Stop, Task
@@ -25,8 +24,7 @@ class Untimeable:
 
     def sentence(self, problem: Problem) -> str:
         """The reason as one sentence."""
-        parts = [sentence(problem, each) for each in self.constraints]
-        return f"these cannot hold together: {'; '.join(parts)}"
+        return f"these cannot hold together: {sentences(problem, self.constraints)}"
 
 
 def earliest_schedule(problem: Problem, routes: Sequence[Route]) -> Schedule | Untimeable:
@@ -134,11 +132,7 @@ class TimedRoutes:
     # --- constraints ------------------------------------------------------------------------------
 
     def _demand(self, later: int, earlier: int, gap_s: float, reason: Constraint) -> None:
-        if self.conflict is not None:
-            return
-        if gap_s == inf:
-            self.conflict = Conflict((reason,), inf)
-        else:
+        if self.conflict is None:
             self.conflict = self.network.after(later, earlier, gap_s, reason)
 
     def _add_robot(self, robot: int, route: Route) -> None:
