@@ -6,6 +6,7 @@ from dataclasses import replace
 from mend.fleet.scheduling.cheapest_insertion import insert_items
 from mend.fleet.scheduling.checker import require_valid
 from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.partial_routes import items_in, renumbered, without_items
 from mend.fleet.scheduling.problem import Item, Problem
 from mend.fleet.scheduling.route_estimate import earliest_end_s
 from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
@@ -116,21 +117,18 @@ class _Greedy:
     def _timeable(self, robot: int, route: Route) -> bool:
         """Also durations and times on board, which show only in the times of the whole route."""
         problem = self._problem
-        numbers = {item: n for n, item in enumerate(sorted({task.item for task in route}))}
+        items = items_in((route,))
         part = Problem(
             problem.name, problem.places, problem.travel, (problem.robots[robot],),
-            tuple(_alone(problem.items[item]) for item in numbers),
+            tuple(_alone(problem.items[item]) for item in items),
         )  # fmt: skip
-        tasks = tuple(Task(task.place, task.action, numbers[task.item]) for task in route)
-        return not isinstance(earliest_schedule(part, (tasks,)), Untimeable)
+        own = renumbered((route,), {item: number for number, item in enumerate(items)})
+        return not isinstance(earliest_schedule(part, own), Untimeable)
 
     def _without_carried(self) -> tuple[tuple[Route, ...], list[int]]:
         """Take out what was never delivered."""
         left = sorted(self._waiting.union(*self._carried))
-        kept = tuple(
-            tuple(task for task in route if task.item not in left) for route in self._routes
-        )
-        return kept, left
+        return without_items(self._routes, left), left
 
 
 def _alone(item: Item) -> Item:

@@ -13,7 +13,7 @@ from mend.fleet.scheduling.constraint import Constraint, ConstraintKind
 from mend.fleet.scheduling.infeasibility import infeasibilities
 from mend.fleet.scheduling.no_place import conflict_words, nearest_conflicts, no_place_words
 from mend.fleet.scheduling.objective import cost
-from mend.fleet.scheduling.partial_routes import part_schedule, without_items
+from mend.fleet.scheduling.partial_routes import items_in, part_schedule, without_items
 from mend.fleet.scheduling.problem import Problem, Window
 from mend.fleet.scheduling.replanning.item_state import without_deadline
 from mend.fleet.scheduling.schedule import Action, Route
@@ -123,15 +123,14 @@ class PlanRepair:
     def _give_way(self) -> None:
         """Take out or relax, one by one, what cannot hold together."""
         while True:
-            whole = [
-                item
-                for item in sorted({task.item for route in self.routes for task in route})
-                if item not in self._begun
-            ]
-            conflict = TimedRoutes(self.problem, self.routes, whole).conflict
+            conflict = self._timed().conflict
             if conflict is None:
                 return
             self._yield_to(conflict)
+
+    def _timed(self) -> TimedRoutes:
+        whole = [item for item in items_in(self.routes) if item not in self._begun]
+        return TimedRoutes(self.problem, self.routes, whole)
 
     def _yield_to(self, conflict: Conflict[Constraint]) -> None:
         """Resolve a conflict as gently as can be: items that nobody is about to do anything with,
@@ -212,8 +211,7 @@ class PlanRepair:
         """Robots that must work longer get no more to do than they have."""
         if not self.overtime:
             return
-        whole = sorted({task.item for route in self.routes for task in route} - set(self._begun))
-        timed = TimedRoutes(self.problem, self.routes, whole)
+        timed = self._timed()
         for robot in list(self.overtime):
             ends_s = timed.network.earliest_s(timed.ends[robot])
             self._change_robot(robot, max(ends_s, self._shift_ends_s[robot]))
