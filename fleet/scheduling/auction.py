@@ -1,22 +1,19 @@
 """The auction: robots bid for items what these cost them more, alone or over a transfer.
 
-Round by round every item that is left gets its lowest bid, and the lowest of all is awarded; each
-bid is a trial in the temporal network that is undone again.
+Round by round every item that is left gets its lowest bid, and the lowest of all is awarded.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import inf
 from random import Random
 
-from mend.fleet.scheduling.constraint import Constraint
 from mend.fleet.scheduling.growing_routes import Bid, GrowingRoutes
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.partial_routes import part_schedule
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Route, Schedule
-from mend.fleet.scheduling.solution import Progress, Solution, Status
-from mend.fleet.scheduling.temporal_network import Conflict
+from mend.fleet.scheduling.solution import Progress, Solution, unproved
 
 ATTEMPTS = 8
 """How many auctions are held, with transfers and without: each offers first what had no place."""
@@ -27,10 +24,10 @@ as the bids grow with the square of how many are on offer."""
 
 @dataclass(frozen=True, slots=True)
 class Sale:
-    """The routes after an auction; the items that got no bid, each with the nearest conflict."""
+    """The routes after an auction; the items that got no bid, or were not offered in time."""
 
     routes: tuple[Route, ...]
-    unsold: dict[int, Conflict[Constraint] | None] = field(default_factory=dict)
+    unsold: tuple[int, ...] = ()
 
 
 def sell(
@@ -54,7 +51,7 @@ def sell(
         raise ValueError("the routes have a conflict before anything is sold")
     carried = [n for n in items if n in growing.begun or problem.items[n].aboard is not None]
     left = carried + [item for item in items if item not in carried]
-    unsold: dict[int, Conflict[Constraint] | None] = {}
+    unsold: list[int] = []
     bids: dict[int, Bid] = {}
     while left and goes_on():
         # What is on board takes up room until it is sold.
@@ -63,7 +60,7 @@ def sell(
             bid = bids.get(item) or growing.bid(item, transfers=transfers)
             if bid is None:
                 # Whoever has no place now will have none when there is more to do.
-                unsold[item] = growing.explain(item)
+                unsold.append(item)
                 left.remove(item)
             else:
                 bids[item] = bid
@@ -72,14 +69,7 @@ def sell(
             changed = growing.award(item, bids.pop(item))
             left.remove(item)
             bids = {n: bid for n, bid in bids.items() if growing.still_lowest(n, bid, changed)}
-    return Sale(growing.routes, {**unsold, **dict.fromkeys(left)})
-
-
-def offer(
-    problem: Problem, routes: Sequence[Route], item: int, *, held: Sequence[int] | None = None
-) -> Sale:
-    """One more item for robots that have routes already: online, nothing else is moved."""
-    return sell(problem, routes, (item,), held=held)
+    return Sale(growing.routes, (*unsold, *left))
 
 
 def solve_by_auction(
@@ -109,10 +99,8 @@ def solve_by_auction(
             best, best_cost = timed[1], cost(problem, timed[1]).total
             if on_progress is not None:
                 on_progress(Progress(best_cost, None, clock() - began_s))
-        first[kind] = _next_first(problem, first[kind], list(sale.unsold), chance)
-    if best is None:
-        return Solution(Status.UNKNOWN, None, None, None, clock() - began_s)
-    return Solution(Status.FEASIBLE, best, cost(problem, best), None, clock() - began_s)
+        first[kind] = _next_first(problem, first[kind], sale.unsold, chance)
+    return unproved(problem, best, clock() - began_s)
 
 
 def _auction(
@@ -126,7 +114,7 @@ def _auction(
     )
     for lot in (*([item] for item in first), urgent):
         more = sell(problem, sale.routes, lot, transfers=transfers, goes_on=goes_on)
-        sale = Sale(more.routes, {**sale.unsold, **more.unsold})
+        sale = Sale(more.routes, sale.unsold + more.unsold)
     return sale
 
 

@@ -9,7 +9,7 @@ from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.partial_routes import part_schedule
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Route, Schedule
-from mend.fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.solution import Progress, Solution, unproved
 
 ORDERS = 12
 """In how many orders the items are put in; the best schedule counts."""
@@ -45,7 +45,7 @@ def solve_by_insertion(
             if on_progress is not None:
                 on_progress(Progress(best_cost, None, clock() - began_s))
         orders[kind] = _next_order(problem, orders[kind], failed, chance)
-    return _solution(problem, best, clock() - began_s)
+    return unproved(problem, best, clock() - began_s)
 
 
 def insert_items(
@@ -53,18 +53,16 @@ def insert_items(
     routes: Sequence[Route],
     items: Sequence[int],
     goes_on: Callable[[], bool],
-    *,
-    transfers: bool = True,
 ) -> tuple[tuple[Route, ...] | None, int | None]:
     """The routes with more items in them, or None and the item that has no place.
 
-    `routes` hold all items but these; `transfers`: whether these may change robots.
+    `routes` hold all items but these.
     """
     growing = GrowingRoutes(problem, routes)
     if growing.conflict is not None:
         return None, items[0] if items else None
     for item in items:
-        bid = growing.bid(item, transfers=transfers) if goes_on() else None
+        bid = growing.bid(item) if goes_on() else None
         if bid is None:
             return None, item
         growing.award(item, bid)
@@ -105,9 +103,3 @@ def _next_order(
         changed.remove(failed)
         changed.insert(0, failed)
     return sorted(changed, key=lambda item: problem.items[item].aboard is None)
-
-
-def _solution(problem: Problem, best: Schedule | None, seconds: float) -> Solution:
-    if best is None:
-        return Solution(Status.UNKNOWN, None, None, None, seconds)
-    return Solution(Status.FEASIBLE, best, cost(problem, best), None, seconds)

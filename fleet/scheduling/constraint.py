@@ -1,5 +1,6 @@
 """The constraints of a schedule by name, and the sentence that says what one demands."""
 
+from collections.abc import Iterable
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -28,6 +29,11 @@ class Constraint(NamedTuple):
     kind: ConstraintKind
     robot: int | None = None
     task: Task | None = None
+
+
+def sentences(problem: Problem, constraints: Iterable[Constraint]) -> str:
+    """What the constraints demand, one after the other."""
+    return "; ".join(sentence(problem, each) for each in constraints)
 
 
 def sentence(problem: Problem, constraint: Constraint) -> str:

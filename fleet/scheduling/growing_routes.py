@@ -1,4 +1,4 @@
-"""Routes that grow item by item: what each would cost more, and why one has no place."""
+"""Routes that grow item by item: what each would cost more."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -13,12 +13,10 @@ from mend.fleet.scheduling.alns.records import Integers, Records
 from mend.fleet.scheduling.alns.repair import insert
 from mend.fleet.scheduling.alns.routes import longest_chain, plan_of, routes_in
 from mend.fleet.scheduling.alns.state import state_for
-from mend.fleet.scheduling.constraint import Constraint
 from mend.fleet.scheduling.partial_routes import items_in
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.rng import rng_from
-from mend.fleet.scheduling.schedule import Action, Route, Task
-from mend.fleet.scheduling.temporal_network import Conflict
+from mend.fleet.scheduling.schedule import Route
 from mend.fleet.scheduling.timing import TimedRoutes
 
 
@@ -61,7 +59,8 @@ class GrowingRoutes:
         plan = plan_of(self._arrays, problem, routes)
         self._fits = update(self._arrays, plan, self._state.sweep)
         copy_plan(plan, self._state.current)
-        self.conflict = None if self._fits else self._timed(routes).conflict
+        whole = [item for item in items_in(routes) if item not in self.begun]
+        self.conflict = None if self._fits else TimedRoutes(problem, routes, whole).conflict
 
     @property
     def routes(self) -> tuple[Route, ...]:
@@ -107,22 +106,6 @@ class GrowingRoutes:
             row not in changed or price >= bid.cost for row, price in zip(rows, extra, strict=True)
         )
 
-    def explain(self, item: int) -> Conflict[Constraint] | None:
-        """Why no robot can do an item after all else; None where load and ways alone forbid it."""
-        described = self.problem.items[item]
-        carrier = self.begun.get(item, described.aboard)
-        pick = Task(described.pickup.place, Action.PICK, item)
-        drop = Task(described.delivery.place, Action.DROP, item)
-        tasks = (pick, drop) if carrier is None else (drop,)
-        routes, conflicts = self.routes, []
-        for robot in range(len(self.problem.robots)) if carrier is None else (carrier,):
-            if self.problem.robots[robot].capacity >= described.load:
-                longer = _bound_to(routes, robot)
-                longer[robot] = (*longer[robot], *tasks)
-                conflicts.append(self._timed(longer, item).conflict)
-        known = [conflict for conflict in conflicts if conflict is not None]
-        return min(known, key=lambda conflict: conflict.excess_s, default=None)
-
     def _bid(self, item: int, allowed: Allowed) -> Bid | None:
         arrays, state = self._arrays, self._state
         if not self._fits:
@@ -133,17 +116,3 @@ class GrowingRoutes:
         price = routes_cost(arrays, state.trial) - routes_cost(arrays, state.current)
         changes = int(state.trial.transfers[item])
         return Bid(price, changes, state.found.leg.copy(), state.found.ends.copy())
-
-    def _timed(self, routes: Sequence[Route], item: int | None = None) -> TimedRoutes:
-        whole = [each for each in items_in(routes) if each == item or each not in self.begun]
-        return TimedRoutes(self.problem, routes, whole)
-
-
-def _bound_to(routes: Sequence[Route], robot: int) -> list[Route]:
-    """The routes of a robot and of all whose times depend on its own; the others' empty."""
-    bound, found = {robot}, [robot]
-    while found:
-        partners = {task.partner for task in routes[found.pop()] if task.partner is not None}
-        found.extend(partners - bound)
-        bound |= partners
-    return [route if each in bound else () for each, route in enumerate(routes)]

@@ -10,7 +10,7 @@ from math import inf
 
 import numpy as np
 
-from mend.fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
+from mend.fleet.scheduling.constraint import Constraint, ConstraintKind, sentences
 from mend.fleet.scheduling.problem import Problem, Robot, Transfers
 from mend.fleet.scheduling.schedule import Action, Task
 from mend.fleet.scheduling.temporal_network import ORIGIN, Conflict, TemporalNetwork
@@ -121,7 +121,7 @@ def _carriers(problem: Problem, number: int, able: list[int]) -> Iterator[tuple[
 
 
 def _conflict_words(problem: Problem, conflict: Conflict[Constraint]) -> str:
-    words = "; ".join(sentence(problem, each) for each in conflict.reasons)
+    words = sentences(problem, conflict.reasons)
     if conflict.excess_s < inf:
         words += f" (together they ask for {conflict.excess_s:g} s more than there is)"
     return words
@@ -156,11 +156,7 @@ class _Delivery:
         self._return(self._drop, taker, delivery.place, delivery.service_s)
 
     def _demand(self, later: int, earlier: int, gap_s: float, reason: Constraint) -> None:
-        if self.conflict is not None:
-            return
-        if gap_s == inf:
-            self.conflict = Conflict((reason,), inf)
-        else:
+        if self.conflict is None:
             self.conflict = self._network.after(later, earlier, gap_s, reason)
 
     def _window(self, closes: bool, task: Task | None = None) -> Constraint:

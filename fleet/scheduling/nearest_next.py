@@ -6,10 +6,11 @@ from dataclasses import replace
 from mend.fleet.scheduling.cheapest_insertion import insert_items
 from mend.fleet.scheduling.checker import require_valid
 from mend.fleet.scheduling.objective import cost
+from mend.fleet.scheduling.partial_routes import items_in, renumbered, without_items
 from mend.fleet.scheduling.problem import Item, Problem
-from mend.fleet.scheduling.route_estimate import estimate
+from mend.fleet.scheduling.route_estimate import earliest_end_s
 from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
-from mend.fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.solution import Progress, Solution, unproved
 from mend.fleet.scheduling.timing import Untimeable, earliest_schedule, service_s, task_window
 
 
@@ -37,12 +38,10 @@ def solve_by_nearest_next(
             require_valid(problem, timed)
             better = start is None or cost(problem, timed).total < cost(problem, start).total
             best = timed if better else start
-    if best is None:
-        return Solution(Status.UNKNOWN, None, None, None, clock() - began_s)
-    found = cost(problem, best)
-    if on_progress is not None:
-        on_progress(Progress(found.total, None, clock() - began_s))
-    return Solution(Status.FEASIBLE, best, found, None, clock() - began_s)
+    solution = unproved(problem, best, clock() - began_s)
+    if on_progress is not None and solution.cost is not None:
+        on_progress(Progress(solution.cost.total, None, solution.seconds))
+    return solution
 
 
 class _Greedy:
@@ -112,28 +111,24 @@ class _Greedy:
         urgent = sorted(carried, key=lambda item: (items[item].delivery.window.latest_s, item))
         drops = tuple(self._task(Action.DROP, item) for item in urgent)
         whole = (*route, *drops)
-        if estimate(self._problem, robot, whole) is None:
-            return False
-        return self._timeable(robot, whole)
+        ends_s = earliest_end_s(self._problem, robot, whole)
+        return ends_s is not None and self._timeable(robot, whole)
 
     def _timeable(self, robot: int, route: Route) -> bool:
         """Also durations and times on board, which show only in the times of the whole route."""
         problem = self._problem
-        numbers = {item: n for n, item in enumerate(sorted({task.item for task in route}))}
+        items = items_in((route,))
         part = Problem(
             problem.name, problem.places, problem.travel, (problem.robots[robot],),
-            tuple(_alone(problem.items[item]) for item in numbers),
+            tuple(_alone(problem.items[item]) for item in items),
         )  # fmt: skip
-        tasks = tuple(Task(task.place, task.action, numbers[task.item]) for task in route)
-        return not isinstance(earliest_schedule(part, (tasks,)), Untimeable)
+        own = renumbered((route,), {item: number for number, item in enumerate(items)})
+        return not isinstance(earliest_schedule(part, own), Untimeable)
 
     def _without_carried(self) -> tuple[tuple[Route, ...], list[int]]:
         """Take out what was never delivered."""
         left = sorted(self._waiting.union(*self._carried))
-        kept = tuple(
-            tuple(task for task in route if task.item not in left) for route in self._routes
-        )
-        return kept, left
+        return without_items(self._routes, left), left
 
 
 def _alone(item: Item) -> Item:

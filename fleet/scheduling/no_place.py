@@ -1,17 +1,19 @@
 """The sentence for an item that has no place beside what the robots have to do already."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 
 from mend.fleet.scheduling.auction import sell
-from mend.fleet.scheduling.constraint import Constraint, sentence
+from mend.fleet.scheduling.constraint import Constraint
+from mend.fleet.scheduling.partial_routes import items_in
 from mend.fleet.scheduling.problem import Problem
+from mend.fleet.scheduling.schedule import Route
 from mend.fleet.scheduling.temporal_network import Conflict
+from mend.fleet.scheduling.timing import TimedRoutes, Untimeable
 
 
 def conflict_words(problem: Problem, conflict: Conflict[Constraint]) -> str:
     """Which constraints cannot hold together."""
-    words = "; ".join(sentence(problem, each) for each in conflict.reasons)
-    return f"these cannot hold together: {words}"
+    return Untimeable(conflict.reasons).sentence(problem)
 
 
 def no_place_words(problem: Problem, item: int, conflict: Conflict[Constraint] | None) -> str:
@@ -35,5 +37,50 @@ def left_over_words(problem: Problem, *, seconds: float, clock: Callable[[], flo
     routes = ((),) * len(problem.robots)
     items = range(len(problem.items))
     sale = sell(problem, routes, items, goes_on=lambda: clock() - began_s < seconds)
-    found = [(item, why) for item, why in sale.unsold.items() if why is not None]
+    if clock() - began_s >= seconds:
+        return None
+    conflicts = nearest_conflicts(problem, sale.routes, sale.unsold, {})
+    found = [(item, why) for item, why in conflicts.items() if why is not None]
     return no_place_words(problem, *found[0]) if found else None
+
+
+def nearest_conflicts(
+    problem: Problem, routes: Sequence[Route], items: Sequence[int], begun: Mapping[int, int]
+) -> dict[int, Conflict[Constraint] | None]:
+    """By item the least of what breaks where a robot does it after all else, over all robots.
+
+    None where load and ways alone forbid it. The routes have none of the items but the pickups of
+    those that are `begun`, each with its robot. Raises `BrokenItineraryError`.
+    """
+    nearest: dict[int, Conflict[Constraint] | None] = dict.fromkeys(items)
+    if not nearest:
+        return nearest
+    whole = [item for item in items_in(routes) if item not in begun]
+    timed = TimedRoutes(problem, routes, whole, homeward=False)
+    for robot, described in enumerate(problem.robots):
+        with timed.trial():
+            for other in range(len(problem.robots)):
+                if other != robot:
+                    timed.go_home(other)
+            for item in items:
+                carrier = begun.get(item, problem.items[item].aboard)
+                if carrier in (None, robot) and problem.items[item].load <= described.capacity:
+                    conflict = _conflict_at_the_end(timed, robot, item)
+                    nearest[item] = _lesser(nearest[item], conflict)
+    return nearest
+
+
+def _conflict_at_the_end(timed: TimedRoutes, robot: int, item: int) -> Conflict[Constraint] | None:
+    with timed.trial():
+        timed.append(robot, item)
+        timed.go_home(robot)
+        timed.wait_for_doors()
+        return timed.conflict
+
+
+def _lesser(
+    one: Conflict[Constraint] | None, other: Conflict[Constraint] | None
+) -> Conflict[Constraint] | None:
+    if one is None or other is None:
+        return one or other
+    return one if one.excess_s <= other.excess_s else other

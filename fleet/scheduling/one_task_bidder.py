@@ -9,9 +9,9 @@ from collections.abc import Callable
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.partial_routes import part_schedule
 from mend.fleet.scheduling.problem import Problem
-from mend.fleet.scheduling.route_estimate import estimate
+from mend.fleet.scheduling.route_estimate import earliest_end_s
 from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
-from mend.fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.solution import Progress, Solution, unproved
 
 
 def solve_one_task_each(
@@ -32,12 +32,10 @@ def solve_one_task_each(
     best = start
     if found is not None and (start is None or _total(problem, found) < _total(problem, start)):
         best = found
-    if best is None:
-        return Solution(Status.UNKNOWN, None, None, None, clock() - began_s)
-    price = cost(problem, best)
-    if on_progress is not None:
-        on_progress(Progress(price.total, None, clock() - began_s))
-    return Solution(Status.FEASIBLE, best, price, None, clock() - began_s)
+    solution = unproved(problem, best, clock() - began_s)
+    if on_progress is not None and solution.cost is not None:
+        on_progress(Progress(solution.cost.total, None, solution.seconds))
+    return solution
 
 
 def _shared_out(problem: Problem, goes_on: Callable[[], bool]) -> Schedule | None:
@@ -64,10 +62,9 @@ def _give(problem: Problem, routes: list[Route], item: int) -> bool:
     bidders = range(len(routes)) if described.aboard is None else (described.aboard,)
     bids = []
     for robot in bidders:
-        longer = (*routes[robot], *tasks)
-        finish = estimate(problem, robot, longer)
-        if finish is not None:
-            bids.append((finish.ends_s, robot))
+        ends_s = earliest_end_s(problem, robot, (*routes[robot], *tasks))
+        if ends_s is not None:
+            bids.append((ends_s, robot))
     if not bids:
         return False
     _, winner = min(bids)

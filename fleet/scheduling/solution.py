@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from mend.fleet.scheduling.objective import Cost
+from mend.fleet.scheduling.objective import Cost, cost
+from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Schedule
 
 
@@ -47,3 +48,10 @@ class Solution:
         if self.cost.total <= 0:
             return 0.0
         return max(0.0, (self.cost.total - self.bound) / self.cost.total)
+
+
+def unproved(problem: Problem, schedule: Schedule | None, seconds: float) -> Solution:
+    """What a method gives back that proves nothing: `UNKNOWN` where it has no schedule."""
+    if schedule is None:
+        return Solution(Status.UNKNOWN, None, None, None, seconds)
+    return Solution(Status.FEASIBLE, schedule, cost(problem, schedule), None, seconds)

@@ -83,6 +83,8 @@ class TemporalNetwork(Generic[Reason]):
         """
         if gap_s == -inf:
             return None
+        if gap_s == inf:
+            return Conflict((reason,), inf)
         mark = self.mark()
         edge = _Edge(earlier, later, gap_s, reason)
         self._out[earlier].append(edge)
@@ -98,16 +100,6 @@ class TemporalNetwork(Generic[Reason]):
     def not_before(self, event: int, time_s: float, reason: Reason) -> Conflict[Reason] | None:
         """`event` is at `time_s` or later."""
         return self.after(event, ORIGIN, time_s, reason)
-
-    def not_after(self, event: int, time_s: float, reason: Reason) -> Conflict[Reason] | None:
-        """`event` is at `time_s` or earlier."""
-        return self.after(ORIGIN, event, -time_s, reason)
-
-    def within(
-        self, later: int, earlier: int, span_s: float, reason: Reason
-    ) -> Conflict[Reason] | None:
-        """`later` is at most `span_s` after `earlier`."""
-        return self.after(earlier, later, -span_s, reason)
 
     # --- trials -------------------------------------------------------------------------------
 

@@ -1,11 +1,11 @@
 """From routes to a schedule: the earliest times that all constraints allow."""
 
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
-from math import inf
 
-from mend.fleet.scheduling.constraint import Constraint, ConstraintKind, sentence
+from mend.fleet.scheduling.constraint import Constraint, ConstraintKind, sentences
 from mend.fleet.scheduling.itinerary import ItineraryLeg, itineraries
 from mend.fleet.scheduling.problem import Problem, Window
 from mend.fleet.scheduling.schedule import Action, RobotSchedule, Route, Schedule, Stop, Task
@@ -24,8 +24,7 @@ class Untimeable:
 
     def sentence(self, problem: Problem) -> str:
         """The reason as one sentence."""
-        parts = [sentence(problem, each) for each in self.constraints]
-        return f"these cannot hold together: {'; '.join(parts)}"
+        return f"these cannot hold together: {sentences(problem, self.constraints)}"
 
 
 def earliest_schedule(problem: Problem, routes: Sequence[Route]) -> Schedule | Untimeable:
@@ -40,26 +39,33 @@ class TimedRoutes:
     """The temporal network of some routes, and which of its events is which.
 
     `leaves` and `ends` by robot, `begins` by robot and number of the task. `items`: those that the
-    routes deliver; all if None. Raises `BrokenItineraryError`.
+    routes deliver; all if None. Unless they go `homeward`, robots have no ends. Raises
+    `BrokenItineraryError`.
     """
 
     def __init__(
-        self, problem: Problem, routes: Sequence[Route], items: Sequence[int] | None = None
+        self,
+        problem: Problem,
+        routes: Sequence[Route],
+        items: Sequence[int] | None = None,
+        *,
+        homeward: bool = True,
     ) -> None:
         self.problem = problem
-        self.routes = tuple(routes)
+        self.routes: list[list[Task]] = []
         self.network: TemporalNetwork[Constraint] = TemporalNetwork()
         self.leaves: list[int] = []
-        self.ends: list[int] = []
+        self.ends: dict[int, int] = {}
         self.begins: list[list[int]] = []
         self.conflict: Conflict[Constraint] | None = None
         ways = itineraries(problem, routes, items)
-        for robot in range(len(problem.robots)):
-            self._add_robot(robot)
+        for robot, route in enumerate(routes):
+            self._add_robot(robot, route)
+            if homeward:
+                self.go_home(robot)
         for item, legs in ways.items():
             self._join(item, legs)
-        if problem.travel.epochs:
-            self._wait_for_doors()
+        self.wait_for_doors()
 
     def schedule(self) -> Schedule:
         """The earliest schedule. Raises `ValueError` when there is a conflict."""
@@ -67,40 +73,93 @@ class TimedRoutes:
             raise ValueError("routes with a conflict have no schedule")
         return Schedule(tuple(self._robot_schedule(robot) for robot in range(len(self.routes))))
 
-    def _demand(self, later: int, earlier: int, gap_s: float, reason: Constraint) -> None:
-        if self.conflict is not None:
-            return
-        if gap_s == inf:
-            self.conflict = Conflict((reason,), inf)
-        else:
-            self.conflict = self.network.after(later, earlier, gap_s, reason)
+    # --- more to do -------------------------------------------------------------------------------
 
-    def _add_robot(self, robot: int) -> None:
+    @contextmanager
+    def trial(self) -> Iterator[None]:
+        """What is added meanwhile is taken back in the end."""
+        mark, ends, conflict = self.network.mark(), dict(self.ends), self.conflict
+        lengths = [len(route) for route in self.routes]
+        try:
+            yield
+        finally:
+            self.network.undo(mark)
+            self.ends, self.conflict = ends, conflict
+            for length, route, begins in zip(lengths, self.routes, self.begins, strict=True):
+                del route[length:], begins[length:]
+
+    def append(self, robot: int, item: int) -> None:
+        """Last of all a robot without an end does what its route leaves to be done with an item."""
+        described, route = self.problem.items[item], self.routes[robot]
+        load = next((at for at, task in enumerate(route) if task.item == item), None)
+        if load is None and described.aboard is None:
+            load = len(route)
+            self._add_task(robot, Task(described.pickup.place, Action.PICK, item))
+        self._add_task(robot, Task(described.delivery.place, Action.DROP, item))
+        self._join(item, (ItineraryLeg(robot, load, len(route) - 1),))
+
+    def go_home(self, robot: int) -> None:
+        """After its last task a robot goes to its end, in time."""
         described = self.problem.robots[robot]
-        leaves = self.network.add_event()
-        shift_begin = Constraint(ConstraintKind.SHIFT_BEGIN, robot)
-        self._demand(leaves, ORIGIN, described.shift.earliest_s, shift_begin)
-        begins: list[int] = []
-        before, place, busy_s = leaves, described.start, 0.0
-        for task in self.routes[robot]:
-            begin = self.network.add_event()
-            gap_s = busy_s + self.problem.travel_time_s(robot, place, task.place)
-            self._demand(begin, before, gap_s, Constraint(ConstraintKind.TRAVEL, robot, task))
-            self._demand_window(begin, task)
-            begins.append(begin)
-            before, place, busy_s = begin, task.place, service_s(self.problem, task)
-        ends = self.network.add_event()
-        gap_s = busy_s
+        before, place, gap_s = self._last(robot)
+        ends = self.ends[robot] = self.network.add_event()
         if described.end is not None:
             gap_s += self.problem.travel_time_s(robot, place, described.end)
         shift_end = Constraint(ConstraintKind.SHIFT_END, robot)
         duration = Constraint(ConstraintKind.DURATION, robot)
         self._demand(ends, before, gap_s, Constraint(ConstraintKind.HOMEWARD, robot))
         self._demand(ORIGIN, ends, -described.shift.latest_s, shift_end)
-        self._demand(leaves, ends, -described.max_duration_s, duration)
+        self._demand(self.leaves[robot], ends, -described.max_duration_s, duration)
+
+    def wait_for_doors(self) -> None:
+        """Move every arrival to when doors let the robot through, until nothing moves any more.
+
+        Later departures never arrive earlier, so that the first times at which nothing moves are
+        the earliest ones. Routes whose times creep on for `MAX_ROUNDS` are taken to have none.
+        """
+        if not self.problem.travel.epochs:
+            return
+        for _ in range(MAX_ROUNDS):
+            late = [trip for robot in range(len(self.routes)) for trip in self._late_trips(robot)]
+            if not late:
+                return
+            for trip in late:
+                self._delay(trip)
+            if self.conflict is not None:
+                return
+        self.conflict = Conflict(tuple(trip.reason for trip in late), 0.0)
+
+    # --- constraints ------------------------------------------------------------------------------
+
+    def _demand(self, later: int, earlier: int, gap_s: float, reason: Constraint) -> None:
+        if self.conflict is None:
+            self.conflict = self.network.after(later, earlier, gap_s, reason)
+
+    def _add_robot(self, robot: int, route: Route) -> None:
+        leaves = self.network.add_event()
+        shift_begin = Constraint(ConstraintKind.SHIFT_BEGIN, robot)
+        self._demand(leaves, ORIGIN, self.problem.robots[robot].shift.earliest_s, shift_begin)
         self.leaves.append(leaves)
-        self.begins.append(begins)
-        self.ends.append(ends)
+        self.begins.append([])
+        self.routes.append([])
+        for task in route:
+            self._add_task(robot, task)
+
+    def _add_task(self, robot: int, task: Task) -> None:
+        before, place, busy_s = self._last(robot)
+        begin = self.network.add_event()
+        gap_s = busy_s + self.problem.travel_time_s(robot, place, task.place)
+        self._demand(begin, before, gap_s, Constraint(ConstraintKind.TRAVEL, robot, task))
+        self._demand_window(begin, task)
+        self.begins[robot].append(begin)
+        self.routes[robot].append(task)
+
+    def _last(self, robot: int) -> tuple[int, int, float]:
+        """When a robot begins the last thing that it does, where, and how long that takes."""
+        if not self.routes[robot]:
+            return self.leaves[robot], self.problem.robots[robot].start, 0.0
+        task = self.routes[robot][-1]
+        return self.begins[robot][-1], task.place, service_s(self.problem, task)
 
     def _demand_window(self, begin: int, task: Task) -> None:
         window = task_window(self.problem, task)
@@ -134,22 +193,6 @@ class TimedRoutes:
         )
         self._demand(loaded, drop, -described.max_on_board_s - loading_s, reason)
 
-    def _wait_for_doors(self) -> None:
-        """Move every arrival to when doors let the robot through, until nothing moves any more.
-
-        Later departures never arrive earlier, so that the first times at which nothing moves are
-        the earliest ones. Routes whose times creep on for `MAX_ROUNDS` are taken to have none.
-        """
-        for _ in range(MAX_ROUNDS):
-            late = [trip for robot in range(len(self.routes)) for trip in self._late_trips(robot)]
-            if not late:
-                return
-            for trip in late:
-                self._delay(trip)
-            if self.conflict is not None:
-                return
-        self.conflict = Conflict(tuple(trip.reason for trip in late), 0.0)
-
     def _late_trips(self, robot: int) -> Iterator["_LateTrip"]:
         """The trips of a robot that doors make longer than the network knows so far."""
         described = self.problem.robots[robot]
@@ -158,7 +201,8 @@ class TimedRoutes:
         legs: list[tuple[int, Task | None]] = list(
             zip(self.begins[robot], self.routes[robot], strict=True)
         )
-        legs.append((self.ends[robot], None))
+        if robot in self.ends:
+            legs.append((self.ends[robot], None))
         for event, task in legs:
             destination = described.end if task is None else task.place
             if destination is None:

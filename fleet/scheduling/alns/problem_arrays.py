@@ -130,49 +130,72 @@ def _robots(problem: Problem, kept: Kept | None) -> Records:
 def _items(problem: Problem, kept: Kept | None) -> Records:
     begun = {} if kept is None else kept.begun
     items = records(len(problem.items), "carrier", "load max_on_board_s")
-    for number, item in enumerate(problem.items):
-        aboard = NOBODY if item.aboard is None else item.aboard
-        # What is on board from the beginning has its delivery's time in place of this.
-        longest_s = item.max_on_board_s if item.aboard is None else inf
-        items[number] = begun.get(number, aboard), item.load, longest_s
+    aboard = [item.aboard for item in problem.items]
+    items.carrier = [
+        begun.get(number, NOBODY if robot is None else robot) for number, robot in enumerate(aboard)
+    ]
+    items.load = [item.load for item in problem.items]
+    # What is on board from the beginning has its delivery's time in place of this.
+    items.max_on_board_s = [
+        item.max_on_board_s if item.aboard is None else inf for item in problem.items
+    ]
     return items
 
 
 def _nodes(problem: Problem, chain: int) -> Records:
-    items, robots = problem.items, problem.robots
-    count, exchanges = len(items), 2 * len(items) * chain
-    nodes = records(
-        2 * count + exchanges + 2 * len(robots),
-        "place kind item_of", "earliest_s latest_s due_s service_s load",
-    )  # fmt: skip
+    parts = (_visits(problem), _exchanges(problem, chain), _ends(problem))
+    return np.concatenate(parts).view(np.recarray)
+
+
+def _blank(count: int) -> Records:
+    nodes = records(count, "place kind item_of", "earliest_s latest_s due_s service_s load")
     nodes.earliest_s, nodes.latest_s, nodes.due_s, nodes.item_of = -inf, inf, inf, NOBODY
-    for number, item in enumerate(items):
-        for node, kind, visit in (
-            (number, PICK, item.pickup),
-            (count + number, DROP, item.delivery),
-        ):
-            latest_s = visit.window.latest_s
-            if kind == DROP and item.aboard is not None:
-                # What is on board from the beginning was loaded at the origin of time.
-                latest_s = min(latest_s, item.max_on_board_s)
-            load = item.load if kind == PICK else -item.load
-            nodes[node] = (
-                visit.place, kind, number, visit.window.earliest_s, latest_s, visit.due_s,
-                visit.service_s, load,
-            )  # fmt: skip
-        first = 2 * count + 2 * number * chain
-        for node in range(first, first + 2 * chain):
-            nodes[node].kind, nodes[node].item_of = GIVE + (node - first) % 2, number
-            nodes[node].load = item.load if (node - first) % 2 else -item.load
-    nodes.service_s[2 * count : 2 * count + exchanges] = problem.transfers.service_s
-    for number, robot in enumerate(robots):
-        start, end = nodes.size - 2 * len(robots) + number, nodes.size - len(robots) + number
-        nodes[start].kind, nodes[end].kind = START, END
-        nodes[start].place = robot.start
-        nodes[end].place = problem.travel.count if robot.end is None else robot.end
-        nodes[start].earliest_s = nodes[end].earliest_s = robot.shift.earliest_s
-        nodes[end].latest_s = robot.shift.latest_s
-        nodes[start].load = sum(item.load for item in items if item.aboard == number)
+    return nodes
+
+
+def _visits(problem: Problem) -> Records:
+    items, count = problem.items, len(problem.items)
+    nodes = _blank(2 * count)
+    visits = [item.pickup for item in items] + [item.delivery for item in items]
+    nodes.place = [visit.place for visit in visits]
+    nodes.kind = np.repeat((PICK, DROP), count)
+    nodes.item_of = np.tile(np.arange(count), 2)
+    nodes.earliest_s = [visit.window.earliest_s for visit in visits]
+    nodes.latest_s = [visit.window.latest_s for visit in visits]
+    # What is on board from the beginning was loaded at the origin of time.
+    nodes.latest_s[count:] = np.minimum(
+        nodes.latest_s[count:],
+        [inf if item.aboard is None else item.max_on_board_s for item in items],
+    )
+    nodes.due_s = [visit.due_s for visit in visits]
+    nodes.service_s = [visit.service_s for visit in visits]
+    nodes.load = [item.load for item in items] + [-item.load for item in items]
+    return nodes
+
+
+def _exchanges(problem: Problem, chain: int) -> Records:
+    count = len(problem.items)
+    nodes = _blank(2 * count * chain)
+    nodes.kind = np.tile((GIVE, TAKE), count * chain)
+    nodes.item_of = np.repeat(np.arange(count), 2 * chain)
+    nodes.service_s = problem.transfers.service_s
+    loads = np.array([item.load for item in problem.items])
+    nodes.load = np.repeat(loads, 2 * chain) * np.tile((-1.0, 1.0), count * chain)
+    return nodes
+
+
+def _ends(problem: Problem) -> Records:
+    robots, count = problem.robots, len(problem.robots)
+    nodes = _blank(2 * count)
+    anywhere = problem.travel.count
+    nodes.kind = np.repeat((START, END), count)
+    nodes.place[:count] = [robot.start for robot in robots]
+    nodes.place[count:] = [anywhere if robot.end is None else robot.end for robot in robots]
+    nodes.earliest_s = [robot.shift.earliest_s for robot in robots] * 2
+    nodes.latest_s[count:] = [robot.shift.latest_s for robot in robots]
+    for item in problem.items:
+        if item.aboard is not None:
+            nodes.load[item.aboard] += item.load
     return nodes
 
 

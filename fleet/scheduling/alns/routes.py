@@ -10,6 +10,7 @@ from mend.fleet.scheduling.alns.problem_arrays import (
     GIVE,
     NOBODY,
     PICK,
+    TAKE,
     ProblemArrays,
     give_node,
 )
@@ -19,6 +20,7 @@ from mend.fleet.scheduling.schedule import Action, Route, Task
 
 CHAIN = 3
 """The most transfers of one item, unless routes have more already."""
+ACTIONS = {PICK: Action.PICK, DROP: Action.DROP, GIVE: Action.GIVE, TAKE: Action.TAKE}
 
 
 def longest_chain(routes: Sequence[Route]) -> int:
@@ -29,24 +31,22 @@ def longest_chain(routes: Sequence[Route]) -> int:
 
 def routes_in(problem: ProblemArrays, plan: Plan) -> tuple[Route, ...]:
     """What every robot does in a plan; items in the bank are in no route, but if they are begun."""
-    return tuple(
-        tuple(
-            _task(problem, plan, int(node))
-            for node in plan.stops.node[row, 1 : plan.rows[row].length - 1]
-        )
-        for row in range(problem.robots.size)
+    return tuple(_route(problem, plan, row) for row in range(problem.robots.size))
+
+
+def _route(problem: ProblemArrays, plan: Plan, row: int) -> Route:
+    nodes = plan.stops.node[row, 1 : plan.rows.length[row] - 1]
+    # Column by column, as to read a record takes as long as to read a column.
+    columns = (
+        plan.tasks.place[nodes],
+        problem.nodes.kind[nodes],
+        problem.nodes.item_of[nodes],
+        plan.tasks.row[nodes ^ 1],
     )
-
-
-def _task(problem: ProblemArrays, plan: Plan, node: int) -> Task:
-    place, item = int(plan.tasks[node].place), int(problem.nodes[node].item_of)
-    kind = problem.nodes[node].kind
-    if kind == PICK:
-        return Task(place, Action.PICK, item)
-    if kind == DROP:
-        return Task(place, Action.DROP, item)
-    action = Action.GIVE if kind == GIVE else Action.TAKE
-    return Task(place, action, item, int(plan.tasks[node ^ 1].row))
+    return tuple(
+        Task(place, ACTIONS[kind], item, partner if kind in (GIVE, TAKE) else None)
+        for place, kind, item, partner in zip(*(each.tolist() for each in columns), strict=True)
+    )
 
 
 def plan_of(problem: ProblemArrays, described: Problem, routes: Sequence[Route]) -> Plan:
@@ -54,14 +54,12 @@ def plan_of(problem: ProblemArrays, described: Problem, routes: Sequence[Route])
     the bank. Raises `BrokenItineraryError`."""
     plan = empty_plan(problem)
     nodes: dict[tuple[int, int], int] = {}
-    count = len(described.items)
+    count, carrier = len(described.items), problem.items.carrier.tolist()
     actions: dict[int, list[Action]] = defaultdict(list)
     for task in chain.from_iterable(routes):
         actions[task.item].append(task.action)
     whole = [
-        item
-        for item, done in actions.items()
-        if problem.items[item].carrier == NOBODY or done != [Action.PICK]
+        item for item, done in actions.items() if carrier[item] == NOBODY or done != [Action.PICK]
     ]
     for item, legs in itineraries(described, routes, whole).items():
         first, last = legs[0], legs[-1]
@@ -76,11 +74,11 @@ def plan_of(problem: ProblemArrays, described: Problem, routes: Sequence[Route])
         plan.transfers[item] = len(legs) - 1
         plan.handed[0] += len(legs) - 1
     for robot, route in enumerate(routes):
-        plan.stops[robot, len(route) + 1].node = plan.stops[robot, 1].node
-        plan.rows[robot].length = len(route) + 2
-        for at, task in enumerate(route):
-            node = nodes.get((robot, at), task.item)
-            plan.stops[robot, at + 1].node = node
-            plan.tasks[node].place = task.place
-            plan.tasks[node].row = robot
+        length = len(route)
+        done = [nodes.get((robot, at), task.item) for at, task in enumerate(route)]
+        plan.stops.node[robot, length + 1] = plan.stops.node[robot, 1]
+        plan.stops.node[robot, 1 : length + 1] = done
+        plan.rows.length[robot] = length + 2
+        plan.tasks.place[done] = [task.place for task in route]
+        plan.tasks.row[done] = robot
     return plan

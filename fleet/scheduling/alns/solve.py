@@ -1,7 +1,6 @@
 """The search from outside: how time is shared out, where it starts, and the schedule at the end."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 from itertools import count
 from math import inf
@@ -13,7 +12,7 @@ from mend.fleet.scheduling.checker import require_valid
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Visit, Weights
 from mend.fleet.scheduling.schedule import Schedule
-from mend.fleet.scheduling.solution import Progress, Solution, Status
+from mend.fleet.scheduling.solution import Progress, Solution, unproved
 from mend.fleet.scheduling.timing import Untimeable, earliest_schedule
 from mend.fleet.scheduling.travel import Travel
 
@@ -85,8 +84,5 @@ def _solution(problem: Problem, search: Search, start: Schedule | None, seconds:
         schedule = earliest_schedule(problem, routes_in(search.problem, search.best))
         assert not isinstance(schedule, Untimeable), "the kernels' own times fit"
         candidates.append(require_valid(problem, schedule))
-    nothing = Solution(Status.UNKNOWN, None, None, None, seconds)
-    if not candidates:
-        return nothing
-    best = min(candidates, key=lambda each: cost(problem, each).total)
-    return replace(nothing, status=Status.FEASIBLE, schedule=best, cost=cost(problem, best))
+    best = min(candidates, key=lambda each: cost(problem, each).total, default=None)
+    return unproved(problem, best, seconds)

@@ -11,9 +11,9 @@ from math import inf
 from mend.fleet.scheduling.auction import Sale, sell
 from mend.fleet.scheduling.constraint import Constraint, ConstraintKind
 from mend.fleet.scheduling.infeasibility import infeasibilities
-from mend.fleet.scheduling.no_place import conflict_words, no_place_words
+from mend.fleet.scheduling.no_place import conflict_words, nearest_conflicts, no_place_words
 from mend.fleet.scheduling.objective import cost
-from mend.fleet.scheduling.partial_routes import part_schedule, without_items
+from mend.fleet.scheduling.partial_routes import items_in, part_schedule, without_items
 from mend.fleet.scheduling.problem import Problem, Window
 from mend.fleet.scheduling.replanning.item_state import without_deadline
 from mend.fleet.scheduling.schedule import Action, Route
@@ -98,13 +98,13 @@ class PlanRepair:
         """Sell items; what is under way goes late if it must, what has no place is put off."""
         left = self._sell(self._urgent_first(items))
         late = [item for item in left if self._under_way[item]]
-        for item in late:
-            self._go_late(item, left[item])
+        for item, why in self._reasons(late).items():
+            self._go_late(item, why)
         if late:
             left = self._sell(self._urgent_first(left))
         left = self._sell_beyond_shifts(left)
-        for item, why in left.items():
-            self.put_off[item] = self._why(item, why)
+        self.put_off.update(self._reasons(left))
+        for item in left:
             self.late.pop(item, None)
             self._drop_begun(item)
 
@@ -123,15 +123,14 @@ class PlanRepair:
     def _give_way(self) -> None:
         """Take out or relax, one by one, what cannot hold together."""
         while True:
-            whole = [
-                item
-                for item in sorted({task.item for route in self.routes for task in route})
-                if item not in self._begun
-            ]
-            conflict = TimedRoutes(self.problem, self.routes, whole).conflict
+            conflict = self._timed().conflict
             if conflict is None:
                 return
             self._yield_to(conflict)
+
+    def _timed(self) -> TimedRoutes:
+        whole = [item for item in items_in(self.routes) if item not in self._begun]
+        return TimedRoutes(self.problem, self.routes, whole)
 
     def _yield_to(self, conflict: Conflict[Constraint]) -> None:
         """Resolve a conflict as gently as can be: items that nobody is about to do anything with,
@@ -149,7 +148,7 @@ class PlanRepair:
         elif waiting is not None:
             self._let_go(waiting)
         elif late is not None:
-            self._go_late(late, conflict)
+            self._go_late(late, self._why(late, conflict))
         elif longer is not None:
             self._work_longer(longer, conflict_words(self.problem, conflict))
         else:
@@ -183,25 +182,22 @@ class PlanRepair:
         self.resell(item)
         self._drop_begun(item)
 
-    def _go_late(self, item: int, conflict: Conflict[Constraint] | None) -> None:
-        self.late[item] = self._why(item, conflict)
+    def _go_late(self, item: int, why: str) -> None:
+        self.late[item] = why
         items = list(self.problem.items)
         items[item] = without_deadline(items[item])
         self.problem = replace(self.problem, items=tuple(items))
 
-    def _sell_beyond_shifts(
-        self, left: dict[int, Conflict[Constraint] | None]
-    ) -> dict[int, Conflict[Constraint] | None]:
+    def _sell_beyond_shifts(self, left: Sequence[int]) -> Sequence[int]:
         """Robots bring what they have on board, if need be after their shifts."""
         stuck = [item for item in left if self.problem.items[item].aboard is not None]
-        for item in stuck:
+        for item, why in self._reasons(stuck).items():
             robot = self.problem.items[item].aboard
             assert robot is not None, "it is on board"
             if robot not in self.overtime:
-                self._work_longer(robot, self._why(item, left[item]))
+                self._work_longer(robot, why)
         if not stuck:
             return left
-        left = {**left, **dict.fromkeys(stuck)}
         left = self._sell(self._urgent_first(left))
         self._end_overtime()
         return left
@@ -215,8 +211,7 @@ class PlanRepair:
         """Robots that must work longer get no more to do than they have."""
         if not self.overtime:
             return
-        whole = sorted({task.item for route in self.routes for task in route} - set(self._begun))
-        timed = TimedRoutes(self.problem, self.routes, whole)
+        timed = self._timed()
         for robot in list(self.overtime):
             ends_s = timed.network.earliest_s(timed.ends[robot])
             self._change_robot(robot, max(ends_s, self._shift_ends_s[robot]))
@@ -231,13 +226,13 @@ class PlanRepair:
 
     # --- selling ----------------------------------------------------------------------------------
 
-    def _sell(self, items: Sequence[int]) -> dict[int, Conflict[Constraint] | None]:
+    def _sell(self, items: Sequence[int]) -> Sequence[int]:
         """Sell items, with transfers or without as is better; what is left over.
 
         Each way also with what had no place offered first.
         """
         if not items:
-            return {}
+            return ()
         ways = (True, False) if self.problem.transfers.places and len(items) > 1 else (True,)
         sales: list[Sale] = []
         for way in ways:
@@ -247,10 +242,13 @@ class PlanRepair:
             sales.append(sale)
             if hard and easy:
                 sales.append(self._auction(hard, way, easy))
-        best = min(sales, key=lambda sale: (len(sale.unsold), self._cost(sale)))
+        fewest = min(len(sale.unsold) for sale in sales)
+        # Each cost takes a schedule of everything, so nothing is timed that has no rival.
+        rivals = list(dict.fromkeys(sale for sale in sales if len(sale.unsold) == fewest))
+        best = min(rivals, key=self._cost) if len(rivals) > 1 else rivals[0]
         self.routes = list(best.routes)
         self._begun = {item: k for item, k in self._begun.items() if item in best.unsold}
-        return dict(best.unsold)
+        return best.unsold
 
     def _auction(self, items: Sequence[int], transfers: bool, then: Sequence[int] = ()) -> Sale:
         begun = self._begun
@@ -263,7 +261,7 @@ class PlanRepair:
         more = sell(
             self.problem, sale.routes, then, held=self.held, begun=begun, transfers=transfers
         )
-        return Sale(more.routes, {**sale.unsold, **more.unsold})
+        return Sale(more.routes, sale.unsold + more.unsold)
 
     def _cost(self, sale: Sale) -> float:
         timed = part_schedule(self.problem, without_items(sale.routes, sale.unsold))
@@ -287,6 +285,11 @@ class PlanRepair:
             self.held[robot] = 0
 
     # --- why --------------------------------------------------------------------------------------
+
+    def _reasons(self, items: Sequence[int]) -> dict[int, str]:
+        """Why each of some items has no place in the routes as they are now."""
+        conflicts = nearest_conflicts(self.problem, self.routes, items, self._begun)
+        return {item: self._why(item, conflict) for item, conflict in conflicts.items()}
 
     def _why(self, item: int, conflict: Conflict[Constraint] | None) -> str:
         """One sentence: what cannot hold whatever the robots do, or beside what they have to do."""

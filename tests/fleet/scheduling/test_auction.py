@@ -7,7 +7,7 @@ from delivery_problems import corridor, corridor_items, parcel
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from mend.fleet.scheduling.auction import offer, sell
+from mend.fleet.scheduling.auction import sell
 from mend.fleet.scheduling.growing_routes import GrowingRoutes
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.partial_routes import part_schedule, without_items
@@ -64,10 +64,10 @@ def test_bidding_leaves_everything_as_it_was(
 
 @given(corridor_items(), kinds_of_transfers)
 @settings(deadline=None, max_examples=40)
-def test_offer_moves_nothing_else(items: tuple[Item, ...], transfers: Transfers) -> None:
+def test_one_more_item_moves_nothing_else(items: tuple[Item, ...], transfers: Transfers) -> None:
     problem = problem_with((*items, parcel("new", 3, 1)), transfers, Weights())
     first = sell(problem, ((), ()), range(len(items)))
-    second = offer(problem, first.routes, len(items))
+    second = sell(problem, first.routes, [len(items)])
     assert without_items(second.routes, {len(items)}) == first.routes
     assert set(second.unsold) <= {len(items)}
 

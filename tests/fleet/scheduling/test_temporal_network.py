@@ -101,7 +101,15 @@ def test_slack_says_how_late_an_event_may_be() -> None:
     network = network_of(2)
     assert network.not_before(1, 5.0, 0) is None
     assert network.after(2, 1, 10.0, 1) is None
-    assert network.not_after(2, 18.0, 2) is None
+    assert network.after(ORIGIN, 2, -18.0, 2) is None
     assert network.slack_s(1) == 3.0
-    assert network.within(2, 1, 12.0, 3) is None
+    assert network.after(1, 2, -12.0, 3) is None
     assert network.slack_s(2) == 3.0
+
+
+def test_way_that_does_not_exist_is_a_conflict_by_itself() -> None:
+    network = network_of(2)
+    conflict = network.after(2, 1, inf, 7)
+    assert conflict is not None
+    assert conflict.reasons == (7,)
+    assert network.earliest_s(2) == 0.0
