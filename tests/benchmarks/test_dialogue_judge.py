@@ -365,6 +365,10 @@ def test_who_has_done_it_is_told_truly() -> None:
     assert done(Told().begin(), "human") == ["no person put it there"]
     assert done(Told().begin().deed(Act.PLACE), "human") == []
     assert done(Told().begin(), "both") == ["no person was heard to help"]
+    taken = {"node": "/1", "name": "part_2", "helper": "ann", "until": 60.0, "was_at": None}
+    of_person = Told().begin().add(ev.NodeTaken, **taken)
+    human = {"node": "/1", "name": "part_2", "by": "human"}
+    assert "no person put it there" in of_person.add(ev.NodeDone, **human).wrong()
     run = Told().begin().now(STARTS).add(ev.NodeDone, by="robot")
     assert len(run.wrong()) == 1
     assert "m off" in run.wrong()[0]
