@@ -34,7 +34,7 @@ def _at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str])
 def _not_at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
     off_m = max(record.offset(index, event.node, event.object))
     moment = record.moment(index)
-    hidden = moment.blocked or moment.dark or record.arm_holds_in_place(index)
+    hidden = moment.blocked or moment.dark or record.arm_holds_in_place(index, event.robot)
     return None if off_m > CLEARLY_AT_PLACE_M or hidden else "it is there"
 
 
@@ -47,7 +47,7 @@ def _nowhere(record: RunRecord, _: int, event: ev.Prompt, __: re.Match[str]) -> 
     moment = record.moment(index)
     # Of equal parts any may be the one that is gone.
     gone = any(moment.resting.get(each) is None for each in record.equals(event.object))
-    hidden = moment.blocked or record.may_be_hidden(index, event.object)
+    hidden = moment.blocked or record.may_be_hidden(index, event.object, event.robot)
     return None if gone or hidden else "it lies on the table"
 
 
@@ -92,7 +92,7 @@ def _not_held_yet(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[s
 def _not_in_reach(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
     """What lies in the open, and not only since a moment ago, must not be told not to be there."""
     moment = record.moment(index)
-    if moment.blocked or moment.dark or record.may_be_hidden(index, event.object):
+    if moment.blocked or moment.dark or record.may_be_hidden(index, event.object, event.robot):
         return None
     if not record.is_surely_in_reach(index, event.object):
         return None

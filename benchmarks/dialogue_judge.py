@@ -74,7 +74,7 @@ class DialogueJudge:
         begun = max(
             i
             for i, each in enumerate(self._events[:index])
-            if isinstance(each, ev.NodeStarted) and each.node == event.node
+            if isinstance(each, ev.NodeStarted | ev.NodeTaken) and each.node == event.node
         )
         since = self._events[begun:index]
         deeds = [each for each in since if isinstance(each, ev.InterventionDone) and each.ok]

@@ -14,6 +14,8 @@ from mend.robots.body import Matrix4
 from mend.robots.vision.line_of_sight import sight_of
 from mend.robots.vision.seen_box import SeenBox
 from mend.server.journal import events as ev
+from mend.sim.base_frame import base_in_scene
+from mend.tasks.frames import Frame, frames_of
 from mend.tasks.part_boxes import height_of
 from mend.tasks.scene import Scene
 
@@ -59,7 +61,7 @@ class RunRecord:
         self._moments = moments
         self._scene = Scene.model_validate(started.scene, strict=False)
         self._leaves = leaves_of(started)
-        self._eye = _eye_of(started.world, self._scene)
+        self._eyes = _eyes_of(started, self._scene)
         self._raised: dict[str, ev.IssueRaised] = {}
         self._opened: dict[Any, int] = {}
 
@@ -122,20 +124,21 @@ class RunRecord:
         """The world when the issue of a leaf was raised last."""
         return self._moments[self.raised_at(node)]
 
-    def may_be_hidden(self, index: int, name: str | None) -> bool:
-        """Whether the head camera does not show where a part is, or another part may hide it."""
+    def may_be_hidden(self, index: int, name: str | None, robot: str) -> bool:
+        """Whether a robot's camera does not show where a part is, or another part may hide it."""
         resting = self._moments[index].resting
         rest = resting.get(name or "")
         if rest is None or name is None:
             return False
-        if not self._eye.shows(rest):
+        eye = self._eyes[robot]
+        if not eye.shows(rest):
             return True
         others = [
             self._box(other, each, math.hypot)
             for other, each in resting.items()
             if other != name and each is not None
         ]
-        seen = sight_of(self._eye.at, self._box(name, rest, min), others).share
+        seen = sight_of(eye.at, self._box(name, rest, min), others).share
         return seen < WHOLE_SHARE or self.buried(index, name)
 
     def buried(self, index: int, name: str | None) -> bool:
@@ -190,9 +193,13 @@ class RunRecord:
             math.hypot(rest.x - each.x, rest.y - each.y) <= SAME_SPOT_M for each in spots
         )
 
-    def arm_holds_in_place(self, index: int) -> bool:
-        """Whether the arm has stopped in the middle of a step, where it may hide what is below."""
-        held = (each.at for each in self.events[:index] if isinstance(each, ev.RobotHolding))
+    def arm_holds_in_place(self, index: int, robot: str) -> bool:
+        """Whether its arm has stopped in the middle of a step, where it may hide what is below."""
+        held = (
+            each.at
+            for each in self.events[:index]
+            if isinstance(each, ev.RobotHolding) and each.robot == robot
+        )
         return deque(held, maxlen=1) == deque(["in_place"])
 
     def answered_last(self, index: int, event: ev.DialogueEvent) -> bool:
@@ -278,7 +285,7 @@ class RunRecord:
 
 @dataclass(frozen=True, slots=True)
 class _Eye:
-    """A head camera: its optical frame in the base frame, and how far it sees to its sides."""
+    """A head camera: its optical frame in the scene's, and how far it sees to its sides."""
 
     pose: Matrix4
     slopes: tuple[float, float]
@@ -295,14 +302,28 @@ class _Eye:
         )
 
 
-def _eye_of(world: str, scene: Scene) -> _Eye:
+def _eyes_of(started: ev.RunStarted, scene: Scene) -> Mapping[str, _Eye]:
+    """Each robot's, by its name; robots are listed as they stand in the scene."""
+    frames = frames_of(scene).values()
+    return {
+        robot: _eye_of(started.world, scene, frame)
+        for robot, frame in zip(started.robots, frames, strict=True)
+    }
+
+
+def _eye_of(world: str, scene: Scene, frame: Frame) -> _Eye:
     if world == "tabletop":
         from mend.sim.tabletop.scenery import HEAD_FOCAL_PX, HEAD_SIZE, look_at_table
 
-        pose, size, focal_px = look_at_table(scene.table), HEAD_SIZE, HEAD_FOCAL_PX
+        pose, size, focal_px = (
+            look_at_table(frame.table_to_robot(scene.table)),
+            HEAD_SIZE,
+            HEAD_FOCAL_PX,
+        )
     else:
         from mend.sim.workcell.cameras import head_camera_pose, head_optics
 
         optics = head_optics()
         pose, size, focal_px = head_camera_pose(), optics.size, optics.focal_px
-    return _Eye(pose, (size[0] / 2 / focal_px, size[1] / 2 / focal_px))
+    slopes = size[0] / 2 / focal_px, size[1] / 2 / focal_px
+    return _Eye(base_in_scene(frame) @ pose, slopes)

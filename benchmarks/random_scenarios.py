@@ -1,7 +1,7 @@
 """Random scenarios: does every run end, and is what it says at the end true?
 
     python benchmarks/random_scenarios.py [--runs 1000] [--world tabletop|workcell] [--seed 0]
-        [--robots 1|2|3] [--person] [--jobs 2] [--quick] [--replay SEED]
+        [--robots 1|2|3] [--person] [--leaves N] [--jobs 2] [--quick] [--replay SEED]
 
 Half of the runs are random trees over random scenes, the others random trees with OR over made-up
 scenes (tabletop) or over the EKET base (workcell); with random interventions, and helpers that
@@ -11,9 +11,9 @@ The exit code is 1 if any run broke a constraint, hung or told an untruth, or if
 helper did not finish.
 With `--robots 2` every run is about a random scene with a second robot across the table, with 3
 another one at its end: then no two robots may ever touch, be it with what they hold. With
-`--person` somebody does leaves themselves, gives some back and forgets others. `--replay` prints
-one run's events. Tables of up to 60 parts are worked off here only; the tests take six runs of up
-to 12.
+`--person` somebody does leaves themselves, gives some back and forgets others. With `--leaves` no
+run has more of them than that. `--replay` prints one run's events. Tables of up to 60 parts are
+worked off here only; the tests take six runs of up to 12.
 """
 
 # ruff: noqa: T201
@@ -324,12 +324,14 @@ async def _ended_or_hung(service: "Service", run: UUID, quiet_s: float) -> RunVi
     return await service.runtime.run(run)
 
 
-def _work(world: str, seed: int, robots: int, person: bool) -> Outcome:
+def _work(world: str, seed: int, robots: int, person: bool, most_leaves: int | None) -> Outcome:
     """One run in a worker; a run that blocks its process for good takes the process with it."""
     logging.basicConfig(level=logging.ERROR)
     faulthandler.dump_traceback_later(20 * QUIET_S[world], exit=True)
     try:
-        return asyncio.run(run_once(world, seed, robots=robots, person=person))
+        return asyncio.run(
+            run_once(world, seed, robots=robots, person=person, most_leaves=most_leaves)
+        )
     except Exception as error:
         # Not every error can be sent to the process that waits; one that cannot breaks the pool.
         raise RuntimeError(f"seed {seed}: {type(error).__name__}: {error}") from None
@@ -338,13 +340,21 @@ def _work(world: str, seed: int, robots: int, person: bool) -> Outcome:
 
 
 def run_all(
-    world: str, seeds: list[int], jobs: int, robots: int = 1, *, person: bool = False
+    world: str,
+    seeds: list[int],
+    jobs: int,
+    robots: int = 1,
+    *,
+    person: bool = False,
+    most_leaves: int | None = None,
 ) -> Iterator[Outcome]:
     """The outcomes of all runs as they come in."""
     for name in THREAD_LIMITS:
         os.environ[name] = "1"
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        futures = {pool.submit(_work, world, seed, robots, person): seed for seed in seeds}
+        futures = {
+            pool.submit(_work, world, seed, robots, person, most_leaves): seed for seed in seeds
+        }
         for future in as_completed(futures):
             try:
                 yield future.result()
@@ -394,6 +404,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="the first run's seed")
     parser.add_argument("--robots", type=int, choices=(1, 2, 3), default=1)
     parser.add_argument("--person", action="store_true", help="somebody does leaves themselves")
+    parser.add_argument("--leaves", type=int, help="at most, of one run")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--quick", action="store_true", help="a few runs, as a smoke test")
     parser.add_argument("--replay", type=int, metavar="SEED", help="print one run's events")
@@ -405,6 +416,7 @@ def main() -> int:
                 arguments.replay,
                 robots=arguments.robots,
                 person=arguments.person,
+                most_leaves=arguments.leaves,
                 show=True,
             )
         )
@@ -417,7 +429,12 @@ def main() -> int:
     outcomes: list[Outcome] = []
     seeds = list(range(arguments.seed, arguments.seed + runs))
     for outcome in run_all(
-        arguments.world, seeds, arguments.jobs, arguments.robots, person=arguments.person
+        arguments.world,
+        seeds,
+        arguments.jobs,
+        arguments.robots,
+        person=arguments.person,
+        most_leaves=arguments.leaves,
     ):
         outcomes.append(outcome)
         for sentence in outcome.wrong:

@@ -23,7 +23,8 @@ class CameraImage:
     `bgr`: (height, width, 3) uint8. `depth_m`: (height, width) float32 along the optical axis, NaN
     or 0 where none was measured, or None for a camera without depth. `pose`: the optical frame
     (z forward, x right, y down) in the base frame. A pixel (u, v) is at ((u - cx) / f * d,
-    (v - cy) / f * d, d) in the optical frame.
+    (v - cy) / f * d, d) in the optical frame. `others`: (height, width), where other robots are
+    that say where they are, so that no depth is given there; None where there are none.
     """
 
     bgr: NDArray[np.uint8]
@@ -32,6 +33,7 @@ class CameraImage:
     focal_px: float
     center_px: tuple[float, float]
     time: float
+    others: NDArray[np.bool_] | None = None
 
 
 class Camera(Protocol):

@@ -35,4 +35,4 @@ class CoverableCamera:
         if not self.cover.on:
             return image
         depth_m = None if image.depth_m is None else np.full_like(image.depth_m, np.nan)
-        return replace(image, bgr=np.zeros_like(image.bgr), depth_m=depth_m)
+        return replace(image, bgr=np.zeros_like(image.bgr), depth_m=depth_m, others=None)

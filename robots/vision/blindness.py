@@ -47,7 +47,8 @@ def why_blind(
 ) -> str | None:
     """Why a head picture shows no table, as a clause; None for one that does.
 
-    `own_arm` says of points (n, 3) which are the robot's own: what that hides is no blindness.
+    `own_arm` says of points (n, 3) which are the robot's own: what that hides is no blindness, nor
+    is what other robots hide.
     """
     scale = 1.0 / _SPARSE
     smooth = cv2.resize(image.bgr, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
@@ -65,6 +66,25 @@ def why_blind(
     return None
 
 
+def table_px(image: CameraImage, table: Table) -> NDArray[np.bool_]:
+    """The pixels (h, w) behind which the table is, whatever is in front of it."""
+    _, towards = _way_to_table(image, table, 1)
+    return towards.reshape(image.bgr.shape[:2])
+
+
+def _way_to_table(
+    image: CameraImage, table: Table, every: int
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """How far along each ray the table's plane is, and whether the table is there."""
+    rays = ground_rays(image, every=every).reshape(3, -1).T
+    eye = image.pose[:3, 3]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        away_m = (table.height - eye[2]) / rays[:, 2]
+    ground = eye[:2] + away_m[:, None] * rays[:, :2]
+    off = np.abs(ground - np.array(table.center)) <= np.array(table.size) / 2
+    return away_m, (away_m > 0.0) & off.all(axis=1)
+
+
 def _share_measured(
     image: CameraImage,
     depth_m: NDArray[np.float32],
@@ -74,11 +94,7 @@ def _share_measured(
     """The share of the rays to the table that end on it, or on what stands on it."""
     rays = ground_rays(image, every=_SPARSE).reshape(3, -1).T
     eye = image.pose[:3, 3]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        away_m = (table.height - eye[2]) / rays[:, 2]
-    ground = eye[:2] + away_m[:, None] * rays[:, :2]
-    off = np.abs(ground - np.array(table.center)) <= np.array(table.size) / 2
-    towards = (away_m > 0.0) & off.all(axis=1)
+    away_m, towards = _way_to_table(image, table, _SPARSE)
     depth = depth_m.reshape(-1)[towards].astype(np.float64)
     points = eye + depth[:, None] * rays[towards]
     with np.errstate(invalid="ignore"):
@@ -89,4 +105,6 @@ def _share_measured(
     if own_arm is not None and other.any():
         arm[other] = own_arm(points[other])
     asked = ~arm
+    if image.others is not None:
+        asked &= ~image.others[::_SPARSE, ::_SPARSE].reshape(-1)[towards]
     return float(told[asked].mean()) if asked.any() else 1.0

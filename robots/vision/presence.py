@@ -105,14 +105,29 @@ def is_seen_through(heights: HeightMap, room: SeenBox) -> bool:
 
 
 def is_unmeasured(image: CameraImage, room: SeenBox) -> bool:
-    """Whether a picture has no depth of most of where the top of what is in a room would be."""
+    """Whether a picture has no depth of most of where the top of what is in a room would be.
+
+    Though it might: what other robots hide is asked of nobody.
+    """
     if image.depth_m is None:
         return True
     rows, columns, pictured = _pixels_of_top(image, room)
-    if not pictured.any():
+    rows, columns = rows[pictured], columns[pictured]
+    if image.others is not None:
+        free = ~image.others[rows, columns]
+        rows, columns = rows[free], columns[free]
+    if len(rows) < _LEAST_MEASURED * np.count_nonzero(pictured) or not len(rows):
         return False
-    measured = is_measured(image.depth_m[rows[pictured], columns[pictured]])
+    measured = is_measured(image.depth_m[rows, columns])
     return float(measured.mean()) < _LEAST_MEASURED
+
+
+def top_px(image: CameraImage, room: SeenBox) -> NDArray[np.bool_]:
+    """Pixels (h, w) of where the top of what is in a room would be."""
+    rows, columns, pictured = _pixels_of_top(image, room)
+    found = np.zeros(image.bgr.shape[:2], np.bool_)
+    found[rows[pictured], columns[pictured]] = True
+    return found
 
 
 def _stands_at(box: SeenBox, part: Part, target: Location, bottom_z: float) -> bool:

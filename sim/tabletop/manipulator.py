@@ -22,6 +22,10 @@ PUSH_N = 120.0
 _AROUND_M = 0.10
 """So far from the tool point the gripper reaches in the plane, with some room to spare."""
 
+_BESIDE_M = 0.35
+"""So far beside the table an arm rests: from any side of it the cameras of robots that stand there
+see all of the table past it."""
+
 _FINGER_M = 0.005
 """Fingers still grip what they overlap by less than they are wide."""
 
@@ -48,11 +52,11 @@ class Home:
 
     @classmethod
     def beside(cls, table: Table) -> "Home":
-        """Neutral to the right of the table, out of view; hand-over above its near edge."""
+        """Neutral to the right of the table, out of every view; hand-over above its near edge."""
         return cls(
             neutral=ToolPose(
                 table.center[0],
-                table.center[1] - table.size[1] / 2 - 0.20,
+                table.center[1] - table.size[1] / 2 - _BESIDE_M,
                 table.height + 0.30,
                 0.0,
             ),

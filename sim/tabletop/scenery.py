@@ -13,7 +13,7 @@ from mend.robots.vision.viewpoint import Viewpoint
 from mend.sim.base_frame import base_in_scene, tool_in_base
 from mend.sim.depth_noise import DepthNoise, PinholeOptics
 from mend.sim.lighting import Lighting
-from mend.sim.other_robots import blank_around
+from mend.sim.other_robots import around, blank
 from mend.sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
 from mend.sim.tabletop.blocker import SIZE_M as BLOCKER_SIZE_M
 from mend.sim.tabletop.gripper_shape import FINGER, PALM, finger_offset_m
@@ -196,11 +196,12 @@ class TabletopCamera:
         light = self._lighting.light_at(time_s)
         rendered = self._scenery.render(self, self._base @ pose, self.size, self.focal_px, light)
         center_px = _center_px(self.size)
-        depth_m = None
+        depth_m, others = None, None
         if self.has_depth:
             lens = PinholeOptics(self.focal_px, center_px)
-            depth_m = self._depth_noise.measure(rendered.depth_m, rendered.bgr, lens)
-            depth_m = self._without_other_robots(depth_m, rendered.ids)
+            others = self._other_robots(rendered.ids)
+            measured_m = self._depth_noise.measure(rendered.depth_m, rendered.bgr, lens)
+            depth_m = blank(measured_m, others)
         image = CameraImage(
             bgr=self._lighting.expose(rendered.bgr, time_s),
             depth_m=depth_m,
@@ -208,15 +209,14 @@ class TabletopCamera:
             focal_px=self.focal_px,
             center_px=center_px,
             time=time_s,
+            others=others,
         )
         return image, rendered.ids
 
-    def _without_other_robots(
-        self, depth_m: NDArray[np.float32], ids: NDArray[np.int32]
-    ) -> NDArray[np.float32]:
-        """Depth with nothing measured where robots are that say where they are."""
+    def _other_robots(self, ids: NDArray[np.int32]) -> NDArray[np.bool_] | None:
+        """Where robots are that say where they are."""
         others = self._scenery.other_bodies(self._manipulator)
-        return blank_around(depth_m, np.isin(ids, others)) if others else depth_m
+        return around(np.isin(ids, others)) if others else None
 
 
 class HeadCamera(TabletopCamera):

@@ -13,7 +13,7 @@ from mend.robots.body import CameraImage, Matrix4
 from mend.robots.vision.viewpoint import Viewpoint
 from mend.sim.depth_noise import DepthNoise, PinholeOptics
 from mend.sim.lighting import Lighting
-from mend.sim.other_robots import blank_around
+from mend.sim.other_robots import around, blank
 from mend.sim.raster import Light
 from mend.sim.workcell.rendering import CameraOptics, Renderer, Rendering
 from mend.sim.workcell.robot_model import (
@@ -148,13 +148,19 @@ class WorkcellCamera:
         view = CameraOptics(in_scene, optics.size, optics.focal_px, optics.near_m)
         rendering = self._draw(arrangement, view, self._lighting.light_at(time_s))
         lens = PinholeOptics(optics.focal_px, view.center_px)
+        depth_m, others = None, None
+        if optics.has_depth:
+            others = self._other_robots(rendering)
+            measured_m = self._depth_noise.measure(rendering.depth_m, rendering.bgr, lens)
+            depth_m = blank(measured_m, others)
         image = CameraImage(
             bgr=self._lighting.expose(rendering.bgr, time_s),
-            depth_m=self._measured(rendering, lens) if optics.has_depth else None,
+            depth_m=depth_m,
             pose=pose,
             focal_px=optics.focal_px,
             center_px=view.center_px,
             time=time_s,
+            others=others,
         )
         return image, rendering
 
@@ -168,8 +174,7 @@ class WorkcellCamera:
             drawn = self._drawn = _Drawn(arrangement, light, rendering)
         return drawn.rendering
 
-    def _measured(self, rendering: Rendering, lens: PinholeOptics) -> NDArray[np.float32]:
-        """The depth, with nothing measured where robots are that say where they are."""
-        depth_m = self._depth_noise.measure(rendering.depth_m, rendering.bgr, lens)
+    def _other_robots(self, rendering: Rendering) -> NDArray[np.bool_] | None:
+        """Where robots are that say where they are."""
         others = self._mount.other_bodies()
-        return blank_around(depth_m, np.isin(rendering.bodies, others)) if others else depth_m
+        return around(np.isin(rendering.bodies, others)) if others else None

@@ -1,5 +1,7 @@
 """The judge of dialogues catches what is untrue, and passes what is true."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 from uuid import UUID
@@ -16,7 +18,7 @@ from mend.dialogue.script import HelpState
 from mend.server.journal import events as ev
 from mend.sim.tabletop.layout import lay_out
 from mend.tasks.intervention import Act, Intervention
-from mend.tasks.scene import Scene
+from mend.tasks.scene import Base, Scene
 
 NAMES = [("part_1", "spot_1"), ("part_2", "spot_2")]
 SCENE = lay_out(NAMES, seed=1)
@@ -73,14 +75,16 @@ class Told:
         self.moments.append(self.world)
         return self
 
-    def begin(self, scene: Scene = SCENE, world: str = "tabletop") -> "Told":
+    def begin(
+        self, scene: Scene = SCENE, world: str = "tabletop", robots: Sequence[str] = ("robot",)
+    ) -> "Told":
         self.add(
             ev.RunStarted,
             tree_name="tree",
             tree=definition_of({"then": LEAVES}).model_dump(mode="json"),
             scene=scene.model_dump(mode="json"),
             world=world,
-            robots=["robot"],
+            robots=list(robots),
             seed=1,
             speed="max",
             scenario=None,
@@ -143,9 +147,33 @@ class Told:
         return [each.why for each in DialogueJudge(self.events, self.moments).judge()]
 
 
-def told(world: Moment = STARTS, issue: str = "missed", scene: Scene = SCENE) -> Told:
+def told(
+    world: Moment = STARTS,
+    issue: str = "missed",
+    scene: Scene = SCENE,
+    robots: Sequence[str] = ("robot",),
+) -> Told:
     """A run in which part_1 has just met an issue, while the world was so."""
-    return Told().begin(scene).now(world, 10.0).alarm(issue)
+    return Told().begin(scene, robots=robots).now(world, 10.0).alarm(issue)
+
+
+@pytest.mark.parametrize(
+    ("robots", "hidden"), [(("robot", "other"), False), (("other", "robot"), True)]
+)
+def test_of_several_robots_each_is_judged_by_what_its_own_camera_shows(
+    robots: Sequence[str], hidden: bool
+) -> None:
+    x, y = SCENE.table.center
+    tall = SCENE.objects["part_2"].model_copy(update={"size": (0.10, 0.10, 0.30)})
+    bases = {"here": Base(x=0.0, y=0.0), "across": Base(x=2 * x, y=2 * y, yaw=math.pi)}
+    objects = {**SCENE.objects, "part_2": tall}
+    scene = SCENE.model_copy(update={"objects": objects, "robots": bases})
+    part, table_z = start_of("part_1"), SCENE.table.height
+    behind = replace(
+        STARTS, resting={"part_1": part, "part_2": Rest(part.x + 0.12, part.y, table_z)}
+    )
+    judged = told(behind, "missing", scene, robots).say("I cannot find the part 1. Hm?").wrong()
+    assert (judged == []) is hidden
 
 
 @pytest.mark.parametrize("equal", [True, False])
@@ -365,6 +393,10 @@ def test_who_has_done_it_is_told_truly() -> None:
     assert done(Told().begin(), "human") == ["no person put it there"]
     assert done(Told().begin().deed(Act.PLACE), "human") == []
     assert done(Told().begin(), "both") == ["no person was heard to help"]
+    taken = {"node": "/1", "name": "part_2", "helper": "ann", "until": 60.0, "was_at": None}
+    of_person = Told().begin().add(ev.NodeTaken, **taken)
+    human = {"node": "/1", "name": "part_2", "by": "human"}
+    assert "no person put it there" in of_person.add(ev.NodeDone, **human).wrong()
     run = Told().begin().now(STARTS).add(ev.NodeDone, by="robot")
     assert len(run.wrong()) == 1
     assert "m off" in run.wrong()[0]

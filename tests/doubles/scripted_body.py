@@ -62,6 +62,8 @@ class ScriptedCamera:
             if self._last is not None and self._body.head_frozen:
                 picture = replace(self._last, time=picture.time)
             self._last = picture
+            if self._body.other_robot_at is not None:
+                return behind_robot_at(picture, *self._body.other_robot_at)
             if self._body.head_covered_at is not None:
                 return covered_at(picture, *self._body.head_covered_at)
             return covered(picture) if self._body.head_covered else picture
@@ -80,6 +82,13 @@ def covered(image: CameraImage) -> CameraImage:
     assert image.depth_m is not None
     nothing = np.full_like(image.depth_m, np.nan)
     return replace(image, bgr=np.zeros_like(image.bgr), depth_m=nothing)
+
+
+def behind_robot_at(image: CameraImage, x: float, y: float) -> CameraImage:
+    """What a camera gives that another robot passes before, over a point of the table."""
+    there = covered_at(image, x, y)
+    assert there.depth_m is not None
+    return replace(there, others=np.isnan(there.depth_m))
 
 
 def covered_at(image: CameraImage, x: float, y: float) -> CameraImage:
@@ -123,6 +132,7 @@ class ScriptedBody:
         self.grey_boxes: list = []
         self.head_covered = False
         self.head_covered_at: tuple[float, float] | None = None
+        self.other_robot_at: tuple[float, float] | None = None
         self.head_frozen = False
         self.head_noisy = False
         self.bars: frozenset[str | None] = frozenset()

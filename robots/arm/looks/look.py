@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from mend.robots.arm.behaviors.search import LOOK_AGAIN_S
 from mend.robots.arm.command_resolver import CommandResolver
 from mend.robots.arm.looks.expectation import AtPlace, ViewClear, VisualCheck
 from mend.robots.arm.looks.hand_over import take_from_person
@@ -10,6 +11,7 @@ from mend.robots.arm.looks.looker import Looker
 from mend.robots.arm.looks.way_clear import WayClear
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import Look, Looked
+from mend.robots.vision.behind_others import BehindOthers
 
 _PERIOD_S = 0.5
 
@@ -44,9 +46,13 @@ def look_once(looker: Looker, command: str) -> Routine[Looked]:
 def look_until(
     looker: Looker, command: str, expectation: VisualCheck, within_s: float
 ) -> Routine[Looked]:
-    """Look every half second until it is so or `within_s` have passed."""
+    """Look every half second until it is so or `within_s` have passed.
+
+    That it is not so is said of nothing that robots have hidden all the time that just pass.
+    """
     yield from looker.free_view()
     end_s = looker.arm.body.time_s() + within_s
+    behind = BehindOthers()
     while True:
         left_s = end_s - looker.arm.body.time_s()
         if left_s <= _PERIOD_S:
@@ -54,6 +60,7 @@ def look_until(
             looker.perception.head.doubt()
         yield from looker.feel_whether_it_is_held()
         fulfilled = expectation.is_fulfilled()
-        if fulfilled or left_s <= 1e-9:
+        passing = not fulfilled and looker.others_pass(behind)
+        if fulfilled or (left_s <= 1e-9 and not passing):
             return (yield from looker.answer_and_judge(command, fulfilled))
-        yield from looker.arm.wait(min(_PERIOD_S, left_s))
+        yield from looker.arm.wait(min(_PERIOD_S, left_s) if left_s > 1e-9 else LOOK_AGAIN_S)

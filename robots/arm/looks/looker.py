@@ -11,6 +11,7 @@ from mend.robots.arm.result import JudgedResult
 from mend.robots.body import CameraImage
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import FinishedResult, Looked, ReportBody
+from mend.robots.vision.behind_others import BehindOthers
 from mend.robots.vision.presence import Presence
 
 
@@ -69,6 +70,10 @@ class Looker:
         """A head picture; None if it shows nothing of the table."""
         image = self.perception.head.look()
         return image if self._why_blind(image) is None else None
+
+    def others_pass(self, behind: BehindOthers) -> bool:
+        """Whether robots that pass hide some of the table, not for long."""
+        return self.perception.head.others_pass(behind, self.perception.head.look())
 
     def _why_blind(self, image: CameraImage) -> str | None:
         """Why a picture shows nothing of the table, or of where the one that waits put its part."""

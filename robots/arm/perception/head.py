@@ -13,7 +13,8 @@ from mend.robots.arm.result import JudgedResult
 from mend.robots.body import CameraImage
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location, Sighting
-from mend.robots.vision.blindness import why_frozen, why_outdated
+from mend.robots.vision.behind_others import BehindOthers
+from mend.robots.vision.blindness import table_px, why_frozen, why_outdated
 from mend.robots.vision.blob import Blob
 from mend.robots.vision.carriers import unseen_carriers
 from mend.robots.vision.head import HeadSighting
@@ -27,6 +28,7 @@ from mend.robots.vision.presence import (
     is_unmeasured,
     judge_presence,
     room_of,
+    top_px,
 )
 from mend.robots.vision.projection import project
 from mend.robots.vision.seen_box import SeenBox
@@ -82,6 +84,21 @@ class HeadSense:
         if self.sight(part, image) is not None or not is_unmeasured(image, room):
             return None
         return f"my head camera measures no depth where {part.name} is to be"
+
+    def others_pass(
+        self,
+        behind: BehindOthers,
+        image: CameraImage,
+        of: tuple[Part, Location] | None = None,
+    ) -> bool:
+        """Whether robots that pass hide some of the table, or of a part's place, not for long."""
+        if image.others is None:
+            return False
+        if of is None:
+            return behind.will_show(image, table_px(image, self._catalogue.table))
+        part, target = of
+        room = room_of(part, target, self._catalogue.height_of(target))
+        return behind.will_show(image, top_px(image, room))
 
     def sight(self, part: Part, image: CameraImage) -> HeadSighting | None:
         """Where a part is in a head picture; nowhere while it is held."""

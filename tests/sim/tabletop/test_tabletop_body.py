@@ -9,8 +9,10 @@ from hypothesis import strategies as st
 from tabletop_hands import TABLE_M, Hands
 
 from mend.robots.arm.body import ToolPose
+from mend.robots.vision.blindness import table_px
 from mend.sim.tabletop.world import TabletopWorld
-from mend.tasks.scene import Scene
+from mend.tasks.frames import frames_of
+from mend.tasks.scene import Base, Scene, Table
 
 
 def test_a_segment_is_straight_and_takes_longer_when_slower(hands: Hands) -> None:
@@ -204,6 +206,27 @@ def test_neutral_hides_nothing_from_the_head_camera(world: TabletopWorld) -> Non
         assert rows.max() < 479
         assert columns.min() > 0
         assert columns.max() < 639
+
+
+@pytest.mark.parametrize("size", [(0.4, 0.4), (0.5, 1.2), (0.6, 1.6), (0.9, 0.9)])
+def test_neutral_hides_nothing_of_the_table_from_robots_at_other_sides(
+    size: tuple[float, float],
+) -> None:
+    near_m = 0.30
+    x, y = near_m + size[0] / 2, -0.2
+    table = Table(center=(x, y), size=size)
+    bases = {
+        "here": Base(x=0.0, y=0.0),
+        "across": Base(x=2 * x, y=2 * y, yaw=math.pi),
+        "end": Base(x=x, y=y + size[1] / 2 + near_m, yaw=-math.pi / 2),
+    }
+    scene = Scene(name="shared", table=table, objects={}, places={}, robots=bases)
+    for body, frame in zip(
+        TabletopWorld(scene, seed=0).bodies, frames_of(scene).values(), strict=True
+    ):
+        image = body.cameras["head"].capture()
+        hidden = np.zeros(image.bgr.shape[:2], np.bool_) if image.others is None else image.others
+        assert not (hidden & table_px(image, frame.table_to_robot(table))).any()
 
 
 @given(x=st.floats(0.45, 0.65), y=st.floats(-0.5, 0.1), yaw=st.floats(-1.5, 1.5))
