@@ -35,7 +35,7 @@ def measure_room(points: Any, needs_m: Any, velocities: Any, times_s: Any, room_
                 reach = room + needs_m[point]
                 if reach > 0.0 and dx * dx + dy * dy >= reach * reach:
                     continue
-                room = math.sqrt(dx * dx + dy * dy) - needs_m[point]
+                room = min(room, math.sqrt(dx * dx + dy * dy) - needs_m[point])
         else:
             middle_x, middle_y = -left / turn, forward / turn
             bend_m, swept = speed / abs(turn), abs(turn) * time_s

@@ -51,4 +51,6 @@ class Polyline:
         along_m = np.clip(along_m, low, high)
         feet = begin + ahead * (along_m / lengths_m)[:, None]
         away_m = np.hypot(*(feet - np.array([x, y])).T)
-        return float((self._at_m[:-1] + along_m)[np.argmin(away_m)])
+        between = (self._at_m[1:] >= from_m) & (self._at_m[:-1] <= to_m)
+        nearest = np.argmin(np.where(between, away_m, np.inf))
+        return float(self._at_m[nearest] + along_m[nearest])
