@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from mend.errors import WrongInputError
-from mend.sim.world import SceneChecker, WorldAdapter, WorldUnavailableError
+from mend.sim.world import ParticularWorld, SceneChecker, WorldAdapter, WorldUnavailableError
 from mend.tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
 from mend.tasks.plugins import load_plugins
 from mend.tasks.scene import Scene
@@ -44,16 +44,18 @@ class WorldChecks:
 
     def try_scene(self, scene: Scene) -> dict[str, list[SceneProblem]]:
         """What each world's robot cannot do with the objects of a scene by themselves."""
-        return {name: check(scene, []) for name, check in self._checks()}
+        return {name: check(scene, []) for name, check in self._checks(scene)}
 
     def try_tree(self, scene: Scene, tree: TaskTreeDefinition) -> dict[str, list[SceneProblem]]:
         """What keeps each world's robot from doing a tree in a scene."""
-        return {name: check(scene, tree.nodes) for name, check in self._checks()}
+        return {name: check(scene, tree.nodes) for name, check in self._checks(scene)}
 
-    def _checks(self) -> list[tuple[str, WorldCheck]]:
+    def _checks(self, scene: Scene) -> list[tuple[str, WorldCheck]]:
+        """How the worlds that a scene is for check it; one that was asked for alone always does."""
         found = []
-        for name in sorted(self._adapters):
-            check = self.check_of(name) if _can_run(self._adapters[name]) else None
+        for name, adapter in sorted(self._adapters.items()):
+            asked = len(self._adapters) == 1 or _takes(adapter, scene)
+            check = self.check_of(name) if asked and _can_run(adapter) else None
             if check is not None:
                 found.append((name, check))
         return found
@@ -68,6 +70,10 @@ def _load_worlds(names: list[str]) -> WorldChecks:
 def load_world_checks() -> WorldChecks:
     """The worlds that are installed."""
     return WorldChecks(load_plugins("mend.worlds"))
+
+
+def _takes(adapter: WorldAdapter, scene: Scene) -> bool:
+    return not isinstance(adapter, ParticularWorld) or adapter.takes(scene)
 
 
 def _can_run(adapter: WorldAdapter) -> bool:

@@ -40,6 +40,10 @@ class ListedWorld:
                     f"install Mend as 'mend-robots[{self.name}]'"
                 )
 
+    def takes(self, scene: Scene) -> bool:
+        """A scene with a setting is that of another kind of world."""
+        return not scene.setting
+
     def create_agents(self, setup: WorldSetup) -> "AgentGroup":
         """Build the world and the robots in it.
 

@@ -135,6 +135,15 @@ class KnownReach(Protocol):
 
 
 @runtime_checkable
+class ParticularWorld(Protocol):
+    """A world adapter that tells scenes of its kind from those of others."""
+
+    def takes(self, scene: Scene) -> bool:
+        """Whether a scene is one of this kind at all, whatever may be wrong with it."""
+        ...
+
+
+@runtime_checkable
 class ModelProvider(Protocol):
     """A world adapter whose robot can be drawn from model files."""
 

@@ -24,5 +24,9 @@ class BuildingAdapter(ListedWorld):
             "a building needs a scene that says what its floors are like: `mend building scene`"
         )
 
+    def takes(self, scene: Scene) -> bool:
+        """A building is a scene's setting."""
+        return bool(scene.setting)
+
 
 adapter = BuildingAdapter()

@@ -271,6 +271,6 @@ def test_every_scene_of_the_library_is_possible_by_itself(name: str) -> None:
 
 def test_a_world_that_there_is_not_is_told() -> None:
     with pytest.raises(
-        WrongInputError, match="there is no world 'mars'; there are tabletop, workcell"
+        WrongInputError, match="there is no world 'mars'; there are building, tabletop, workcell"
     ):
         load_world_checks().only("mars")
