@@ -10,7 +10,8 @@ of its dialogues are compared with its events and with where the simulated world
 The exit code is 1 if any run broke a constraint, hung or told an untruth, or if one with a willing
 helper did not finish.
 With `--robots 2` every run is about a random scene with a second robot across the table, with 3
-another one at its end: then no two robots may ever touch, be it with what they hold. With
+another one at its end: then no two robots may ever touch, be it with what they hold, and on
+the tabletop none may leave the space that it has. With
 `--person` somebody does leaves themselves, gives some back and forgets others. With `--leaves` no
 run has more of them than that. `--replay` prints one run's events. Tables of up to 60 parts are
 worked off here only; the tests take six runs of up to 12.
@@ -44,6 +45,7 @@ import numpy as np
 from broken_constraints import broken_constraints
 from dialogue_judge import DialogueJudge
 from leaf_taker import LeafTaker
+from outside_their_space import outside_their_space
 from random_task import random_nesting, random_task
 from touching_robots import touching_robots
 from untruths import Rest, find_untruths, kinds_of
@@ -253,7 +255,10 @@ async def run_once(
         person_leaf_s=FORGOTTEN_S,
     )
     began = time.perf_counter()
-    with touching_robots() if robots > 1 else nullcontext([]) as touched:
+    with (
+        touching_robots() if robots > 1 else nullcontext([]) as touched,
+        outside_their_space() if robots > 1 else nullcontext([]) as outside,
+    ):
         async with open_service(settings, given=given) as service:
             watched = WatchedWorld(service.journal)
             run = (await service.runtime.start_run(request(world, seed, answers))).id
@@ -279,7 +284,7 @@ async def run_once(
         simulated_s=view.time,
         taken=taker.taken,
         missing=len(view.result.missing) if view.result else 0,
-        violations=[*broken_constraints(events, kinds_of(started)), *touched[:3]],
+        violations=[*broken_constraints(events, kinds_of(started)), *touched[:3], *outside[:3]],
         untruths=_untruths(events, watched, where_parts_rest(started, snapshot))
         if view.status.ended
         else [],

@@ -103,7 +103,7 @@ class ArmSubsystem:
         """What a start command asks for, not begun. Raises `CommandError`."""
         assignment = self._resolver.assign(start)
         self._perception.hand.clip.begin()
-        progress = ArmProgress(was_done=assignment.was_done)
+        progress = ArmProgress(was_done=assignment.was_done, object_at=start.object_at)
         work = Work(assignment, progress, self.effector, self._perception, report, self._plans)
         self._work = work
         return ArmExecution(work, [each.create({}) for each in self._monitors])

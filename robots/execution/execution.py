@@ -60,8 +60,11 @@ class Execution(ABC, Generic[G]):
         """Do all of it."""
         return self._attempt(resumed=False)
 
-    def resume(self) -> Routine[None]:
-        """Go on after a hold, where the body allows it. Raises `IllegalTransitionError`."""
+    def resume(self, object_at: tuple[float, float] | None = None) -> Routine[None]:  # noqa: ARG002
+        """Go on after a hold, where the body allows it. Raises `IllegalTransitionError`.
+
+        `object_at`: where the service has its object (base frame), None if it may be anywhere.
+        """
         self._progress.move_to(ExecutionState.PREPARING)
         return self._attempt(resumed=True)
 

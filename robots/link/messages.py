@@ -358,7 +358,9 @@ class Start(Message):
     its object was then seen `gone` from its place, or is still `there` as far as anybody knows;
     None for a leaf that never was, or that a robot has set about since. `finished`: the results
     that there are; one that is seen gone while the robot is about to cover its place ends in
-    `holding`, and the service has it look.
+    `holding`, and the service has it look. `object_at`: where others who work there expect the
+    object to be taken from (base frame, metres), None where nobody else works; one that is seen
+    elsewhere ends in `holding` as well.
     """
 
     type: Literal["start"] = "start"
@@ -370,6 +372,7 @@ class Start(Message):
     target: Location | None = None
     was_done: WasDone | None = None
     finished: list[FinishedResult] = []
+    object_at: tuple[float, float] | None = None
 
 
 class Interrupt(Message):
@@ -380,10 +383,14 @@ class Interrupt(Message):
 
 
 class Resume(Message):
-    """Go on with the held execution where the robot's own state allows it."""
+    """Go on with the held execution where the robot's own state allows it.
+
+    `object_at` as in `start`.
+    """
 
     type: Literal["resume"] = "resume"
     execution: str
+    object_at: tuple[float, float] | None = None
 
 
 class Look(Message):

@@ -8,6 +8,7 @@ from uuid import uuid4
 
 from shapely.geometry.base import BaseGeometry
 
+from mend.robots.arm.shared_space import Flat
 from mend.robots.link.messages import (
     CommandBody,
     FinishedResult,
@@ -100,6 +101,8 @@ class RobotProxy:
     purpose: Purpose | None = None
     holds_execution: bool = False
     seen: dict[str, Sighting] = field(default_factory=dict)
+    last_seen: dict[str, tuple[float, Sighting]] = field(default_factory=dict)
+    """When (the run's clock) and where it last saw each thing that it ever saw."""
     seen_at: float = -math.inf
     """When it last saw anything (the run's clock)."""
     gripper: Point = (0.0, 0.0, 0.0)
@@ -218,7 +221,9 @@ class RobotProxy:
         target: Location | None,
         was_done: WasDone | None,
         finished: list[FinishedResult],
+        object_at: Flat | None,
     ) -> None:
+        """Start; `object_at`: where others expect it to take its object from (scene's frame)."""
         self.looked_at = None
         self.holds_execution = False
         self._tell(
@@ -233,12 +238,18 @@ class RobotProxy:
                 target=None if target is None else _in_base(self.frame, target),
                 was_done=was_done,
                 finished=finished,
+                object_at=self._point_in_base(object_at),
             ),
         )
 
-    def resume(self, execution: StartedExecution) -> None:
+    def resume(self, execution: StartedExecution, object_at: Flat | None) -> None:
+        """Go on; `object_at` as in `start`."""
         self.holds_execution = False
-        self._tell(RobotActivity.WORKING, str(uuid4()), Resume(execution=str(execution.id)))
+        body = Resume(execution=str(execution.id), object_at=self._point_in_base(object_at))
+        self._tell(RobotActivity.WORKING, str(uuid4()), body)
+
+    def _point_in_base(self, point: Flat | None) -> Flat | None:
+        return None if point is None else self.frame.to_robot(*point)
 
     def stop(self) -> None:
         """Stop where it is."""
@@ -259,6 +270,7 @@ class RobotProxy:
         if looked.blind is None:
             self.seen = {name: _in_scene(self.frame, each) for name, each in looked.objects.items()}
             self.seen_at = time
+            self.last_seen |= {name: (time, each) for name, each in self.seen.items()}
         self.held = looked.held
         self.there = frozenset(looked.there)
         self.gripper = (

@@ -399,7 +399,8 @@ class Run:
         execution = state.executions.get(proxy.robot)
         if execution is not None:
             if execution.held and self._may_resume(proxy, execution):
-                proxy.resume(execution)
+                leaf = state.tree.leaf_definition(execution.leaf)
+                proxy.resume(execution, self._team.expected_at(proxy, leaf))
             elif execution.held and not proxy.looked_just_now(self._context.clock.now()):
                 proxy.look(Purpose.RESUME)
             return False
@@ -476,6 +477,7 @@ class Run:
             finished=[
                 each for each, leaf in results_of(state).items() if leaf not in state.left_out
             ],
+            object_at=self._team.expected_at(proxy, tree.leaf_definition(execution.leaf)),
         )
 
     # --- The end ------------------------------------------------------------------------------

@@ -126,6 +126,14 @@ class Team:
             area = self._area(proxy, leaf, handed_over)
             proxy.area = area if proxy.area is None else area.union(proxy.area)
 
+    def expected_at(self, proxy: "RobotProxy", leaf: "BehaviorNode") -> Flat | None:
+        """Where a robot is to find a leaf's object; None if it may be anywhere.
+
+        Elsewhere the space for the leaf does not reach.
+        """
+        bounded = proxy.room is not None and not proxy.keeps_clear
+        return self._object_at(leaf) if self.has_company and bounded else None
+
     def take_up_again(self, proxy: "RobotProxy", leaf: "BehaviorNode") -> None:
         """A robot that may have been anywhere is still at a leaf."""
         if proxy.area is EVERYWHERE:
@@ -182,20 +190,23 @@ class Team:
 
     def _ends(self, leaf: "BehaviorNode") -> list[Flat]:
         """Where a leaf's object was seen, by whom it was seen last, and where it is to be."""
-        ends: list[Flat] = []
-        seen = [
-            (each.seen_at, sighting)
-            for each in self._proxies
-            if (sighting := each.seen.get(leaf.object or "")) is not None
-        ]
-        if seen:
-            _, sighting = max(seen, key=lambda each: each[0])
-            ends.append((sighting.x, sighting.y))
-        elif (part := self._scene.objects.get(leaf.object or "")) is not None:
-            ends.append((part.pose.x, part.pose.y))
+        start = self._object_at(leaf)
+        ends = [] if start is None else [start]
         if (place := self._scene.places.get(leaf.place or "")) is not None:
             ends.append((place.pose.x, place.pose.y))
         return ends
+
+    def _object_at(self, leaf: "BehaviorNode") -> Flat | None:
+        seen = [
+            known
+            for each in self._proxies
+            if (known := each.last_seen.get(leaf.object or "")) is not None
+        ]
+        if seen:
+            _, at = max(seen, key=lambda each: each[0])
+            return at.x, at.y
+        part = self._scene.objects.get(leaf.object or "")
+        return None if part is None else (part.pose.x, part.pose.y)
 
 
 def _not_known_yet(proxy: "RobotProxy") -> bool:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from broken_constraints import broken_constraints
+from outside_their_space import outside_their_space
 from touching_robots import touching_robots
 from untruths import kinds_of
 from watched_world import where_parts_rest
@@ -118,6 +119,32 @@ async def test_parts_that_cross_the_table_are_passed_on_without_asking_anybody()
         "right": ["jar_to_transfer", "cup_from_transfer"],
     }
     assert not [each for each in events if isinstance(each, ev.Prompt)]
+
+
+MOVED = """
+name: moved
+tree: four
+interventions:
+  - when: {object: bolt, step: 8, fraction: 0.9}
+    do: {act: move, object: bolt, to: {x: 0.45, y: 0.40}}
+"""
+
+
+@pytest.mark.slow
+async def test_what_is_moved_to_where_another_arm_may_work_is_fetched_once_the_space_is_had() -> (
+    None
+):
+    with touching_robots() as touched, outside_their_space() as outside:
+        async with open_service(settings()) as service:
+            await service.library.scenes.save("four", FOUR_SCENE)
+            await service.library.trees.save("four", FOUR_TREE)
+            await service.library.scenarios.save("moved", MOVED)
+            moved = request("four", "four").model_copy(update={"scenario": "moved"})
+            run = await service.runtime.start_run(moved)
+            view = await service.runtime.wait_for_end(run.id)
+    assert touched == []
+    assert outside == []
+    assert view.status == "finished"
 
 
 @pytest.mark.slow

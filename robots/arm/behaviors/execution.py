@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from mend.robots.arm.behaviors.confirmation import look_at_outcome
 from mend.robots.arm.behaviors.covering import CoveredResultGone
+from mend.robots.arm.behaviors.elsewhere import SeenElsewhere
 from mend.robots.arm.behaviors.preparation import prepare
 from mend.robots.arm.behaviors.progress import ArmProgress
 from mend.robots.arm.behaviors.put_down import put_down
@@ -63,6 +64,10 @@ class ArmExecution(Execution[ArmProgress]):
         """The object and its place, if it was placed there and that could not be seen."""
         return self._work.unconfirmed
 
+    def resume(self, object_at: tuple[float, float] | None = None) -> Routine[None]:
+        self._progress.object_at = object_at
+        return super().resume(object_at)
+
     # --- What it does -------------------------------------------------------------------------
 
     def _walk(self, *, resumed: bool) -> Routine[bool]:
@@ -91,8 +96,8 @@ class ArmExecution(Execution[ArmProgress]):
         yield from self._arm.go_to_neutral()
 
     def _react(self, interruption: Interruption) -> Routine[None]:
-        if isinstance(interruption, CoveredResultGone):
-            # The service has every result looked at before it lets this go on.
+        if isinstance(interruption, CoveredResultGone | SeenElsewhere):
+            # The service has everything looked at before it lets this go on.
             yield from self.retreat(end=False)
             return
         if interruption.reaction is Reaction.GO_TO_NEUTRAL:

@@ -2,6 +2,7 @@
 
 from mend.errors import IllegalTransitionError
 from mend.robots.arm.behaviors.backing_off import get_out_of_view
+from mend.robots.arm.behaviors.elsewhere import require_where_it_was
 from mend.robots.arm.behaviors.errand import errand_of
 from mend.robots.arm.behaviors.findings import Findings, is_inexact
 from mend.robots.arm.behaviors.grasp_choice import ways_to_grasp
@@ -60,6 +61,8 @@ def _look_with_empty_hands(work: Work, watch: ArmWatch) -> Routine[None]:
     yield from get_out_of_view(work, watch)
     yield from find_object(work)
     _require_sight(work, watch)
+    if not _is_in_place(work):
+        require_where_it_was(work)
 
 
 def _plan_to_fetch_it(work: Work, watch: ArmWatch) -> Routine[None]:
@@ -75,6 +78,7 @@ def _plan_to_fetch_it(work: Work, watch: ArmWatch) -> Routine[None]:
     yield from work.arm.wait(LOOK_AGAIN_S)
     yield from find_object(work)
     _require_sight(work, watch)
+    require_where_it_was(work)
     progress.plan = yield from make_plan(work)
 
 

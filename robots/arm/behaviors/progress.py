@@ -24,10 +24,13 @@ class ArmProgress(Progress):
     off that it is to be placed better; `unconfirmed`: it was let go of there, and nothing could be
     seen. `regrasps`: so often it was let go of, as
     something had pushed it askew, to be grasped anew. `picked_at` is the tool pose at which what is
-    held was picked up, None if a person handed it over.
+    held was picked up, None if a person handed it over. `object_at` is where the service has the
+    object (base frame), None if it may be anywhere; `told_at` where it was last told to be seen.
     """
 
     was_done: WasDone | None
+    object_at: tuple[float, float] | None = None
+    told_at: tuple[float, float] | None = None
     plan: Plan | None = None
     seen: Findings = field(default_factory=Findings)
     outcome: Outcome | None = None
