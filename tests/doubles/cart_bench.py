@@ -7,6 +7,7 @@ from courtyard.cart import PERIOD_S, Cart
 from courtyard.world import Courtyard
 
 from mend.robots.base.subsystem import BaseSubsystem
+from mend.robots.base.ways import Ways
 from mend.robots.catalogue import Catalogue
 from mend.robots.execution.behavior import Behavior
 from mend.robots.execution.monitor import AnyMonitor
@@ -33,6 +34,7 @@ class CartBench:
         self,
         behaviors: Mapping[str, type[Behavior]] | None = None,
         monitors: Mapping[str, type[AnyMonitor]] | None = None,
+        ways: Ways | None = None,
     ) -> None:
         """`behaviors` and `monitors` are in addition to those that are installed."""
         self.world = Courtyard([Frame(-4.0, -3.0)])
@@ -42,6 +44,7 @@ class CartBench:
             Catalogue({}, PLACES, Table()),
             {**load_plugins("mend.behaviors"), **(behaviors or {})},
             {**load_plugins("mend.monitors"), **(monitors or {})},
+            ways,
         )
         self.robot = Robot("cart", self.cart, [base])
         self.reports: list[ReportBody] = []

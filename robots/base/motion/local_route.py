@@ -22,20 +22,23 @@ HALF_M = 4.0
 """The grid reaches so far from the base: beams a degree apart leave no holes in walls that near."""
 SPARE_M = 0.05
 """It keeps so far from everything: more than the window does, by what a cell is imprecise."""
-_ROOMY_M = 0.3
-"""Where there is so much room more it costs nothing more to pass."""
-
 _SIDE = 2 * round(HALF_M / CELL_M) + 1
-_FREE, _CLOSE = 5, 15
+_FREE, _CLOSE = 8, 24
 """The weights of a cell in the open and of one beside what it must not touch: thrice as long."""
-_KEPT = 5
-"""The way that it took before is shorter by a fifth: it does not waver between two sides."""
-_KEPT_M = 0.2
-"""So near to that way it still is on it."""
+_ON_WAY = (5, 8)
+"""The way that it was given is shorter than any beside it: it is left for a reason only."""
+_KEPT = (4, 5)
+"""So is the route that it took before: it does not waver between two sides."""
+_ON_IT_M = 0.2
+"""So near to either it still is on it."""
 _STRAIGHT, _DIAGONAL = 5, 7
+"""The steps to the next cells, by about a hundredth of a metre."""
+_ROOMY = 30
+"""Where there is so much room more (in such steps, 0.3 m) it costs nothing more to pass."""
 _BUCKETS = 256
 """More than any step makes a way longer."""
-_COST_PER_M = _FREE * _STRAIGHT / CELL_M
+_LEAST = _FREE * _ON_WAY[0] * _KEPT[0] // (_ON_WAY[1] * _KEPT[1])
+_COST_PER_M = _FREE * _ON_WAY[0] / _ON_WAY[1] * _STRAIGHT / CELL_M
 _NEVER = int(np.iinfo(np.int32).max)
 
 
@@ -45,7 +48,7 @@ class LocalRoute:
 
     `reached`: which of the targets is the farthest that can be reached, None if none can.
     `carrot`: the point to steer for, straight from here; `way` (k, 2): all of it. `cost_m`: how
-    long it is, where there is little room three times as long.
+    long it is, beside the given way and where there is little room as much longer as that counts.
     """
 
     reached: int | None
@@ -83,10 +86,10 @@ def find_route(
     """
     corner = (np.round(np.array(here) / CELL_M) - _SIDE // 2) * CELL_M
     near = np.abs(points - np.array(here)).max(axis=1, initial=0.0) < HALF_M + radius_m
-    weights = np.full((_SIDE, _SIDE), _FREE, np.uint8)
+    weights = np.empty((_SIDE, _SIDE), np.uint8)
     _spread(weights, points[near] - corner, radius_m + SPARE_M)
-    if len(before):
-        _prefer(weights, before - corner)
+    _prefer(weights, ends.targets - corner, *_ON_WAY)
+    _prefer(weights, before - corner, *_KEPT)
     cells = np.round((ends.targets - corner) / CELL_M).astype(np.int64)
     passed = np.empty((_SIDE * _SIDE, 2), np.int64)
     found = np.zeros(4, np.int64)
@@ -101,11 +104,11 @@ def find_route(
 
 
 @compiled
-def _prefer(weights: Any, way: Any) -> None:
-    """Make what lies near a way shorter."""
+def _prefer(weights: Any, way: Any, of: int, parts: int) -> None:
+    """Make what lies near a way shorter, `of` so many `parts` what it was."""
     side = weights.shape[0]
     marked = np.zeros((side, side), np.uint8)
-    reach = int(_KEPT_M / CELL_M)
+    reach = int(_ON_IT_M / CELL_M)
     for number in range(way.shape[0]):
         column, row = round(way[number, 0] / CELL_M), round(way[number, 1] / CELL_M)
         for to_row in range(max(0, row - reach), min(side, row + reach + 1)):
@@ -114,48 +117,63 @@ def _prefer(weights: Any, way: Any) -> None:
     for row in range(side):
         for column in range(side):
             if marked[row, column] != 0:
-                weights[row, column] -= weights[row, column] // _KEPT
+                weights[row, column] = weights[row, column] * of // parts
 
 
 @compiled
 def _spread(weights: Any, points: Any, blocked_m: float) -> None:
-    """Write to the grid how near each cell is to any of the points, 0 where it is blocked.
+    """Write how near each cell is to what is blocked, 0 where it is blocked itself.
 
     Where the base is stays free: what is nearer already it may leave.
     """
     side = weights.shape[0]
     middle = (side // 2) * CELL_M
-    levels = (_CLOSE - _FREE) // 2
-    outer_m = blocked_m + _ROOMY_M
-    squares = np.empty(levels)
-    for level in range(levels):
-        squares[level] = (blocked_m + _ROOMY_M * (level + 1) / levels) ** 2
+    weights[:] = _ROOMY
     for number in range(points.shape[0]):
         x, y = points[number, 0], points[number, 1]
-        away = (x - middle) ** 2 + (y - middle) ** 2
-        needed = min(blocked_m * blocked_m, away - 1e-6)
-        low = max(0, math.ceil((y - outer_m) / CELL_M))
-        high = min(side - 1, math.floor((y + outer_m) / CELL_M))
+        needed = min(blocked_m * blocked_m, (x - middle) ** 2 + (y - middle) ** 2 - 1e-6)
+        needed_m = math.sqrt(max(0.0, needed))
+        low = max(0, math.ceil((y - needed_m) / CELL_M))
+        high = min(side - 1, math.floor((y + needed_m) / CELL_M))
         for row in range(low, high + 1):
-            dy = row * CELL_M - y
-            half_m = math.sqrt(max(0.0, outer_m * outer_m - dy * dy))
+            half_m = math.sqrt(max(0.0, needed - (row * CELL_M - y) ** 2))
             first = max(0, math.ceil((x - half_m) / CELL_M))
             last = min(side - 1, math.floor((x + half_m) / CELL_M))
             for column in range(first, last + 1):
-                weight = weights[row, column]
-                if weight == 0:
+                weights[row, column] = 0
+    _measure_distances(weights)
+    for row in range(side):
+        for column in range(side):
+            away = weights[row, column]
+            if away != 0:
+                levels = (_CLOSE - _FREE) * (away - _STRAIGHT) // (_ROOMY - _STRAIGHT)
+                weights[row, column] = _CLOSE - levels
+
+
+@compiled
+def _measure_distances(cells: Any) -> None:
+    """The chamfer distance of each cell to the nearest that is 0 (Borgefors 1986)."""
+    side = cells.shape[0]
+    for number in range(2):
+        ahead = 1 if number == 0 else -1
+        start = 0 if number == 0 else side - 1
+        for down in range(side):
+            row = start + ahead * down
+            before = row - ahead
+            for right in range(side):
+                column = start + ahead * right
+                least = cells[row, column]
+                if least == 0:
                     continue
-                dx = column * CELL_M - x
-                square = dx * dx + dy * dy
-                if square < needed:
-                    weights[row, column] = 0
-                    continue
-                close = _CLOSE
-                for level in range(levels):
-                    if square >= squares[level]:
-                        close -= 2
-                if close > weight:
-                    weights[row, column] = close
+                if column - ahead >= 0 and column - ahead < side:
+                    least = min(least, cells[row, column - ahead] + _STRAIGHT)
+                if before >= 0 and before < side:
+                    least = min(least, cells[before, column] + _STRAIGHT)
+                    if column > 0:
+                        least = min(least, cells[before, column - 1] + _DIAGONAL)
+                    if column < side - 1:
+                        least = min(least, cells[before, column + 1] + _DIAGONAL)
+                cells[row, column] = least
 
 
 @compiled
@@ -180,7 +198,7 @@ def _line_cost(weights: Any, column: int, row: int) -> float:
 def _least_cost(rows: int, columns: int) -> int:
     """What the way between two cells costs in the open."""
     far, near = max(abs(rows), abs(columns)), min(abs(rows), abs(columns))
-    return (_FREE - _FREE // _KEPT) * (_STRAIGHT * (far - near) + _DIAGONAL * near)
+    return _LEAST * (_STRAIGHT * (far - near) + _DIAGONAL * near)
 
 
 @compiled

@@ -19,8 +19,8 @@ _SEEN_AHEAD_M = 2.5
 _EVERY_M = 0.05
 _STAND_OFF_M = 0.1
 """It stops so far before the point beyond which it cannot get."""
-_DETOUR_M = 6.0
-"""It goes round things by no more than this, but tells of them."""
+_DETOUR_M = 8.0
+"""It goes round things by no more than this (of a route's cost), but tells of them."""
 _GETS_ON_M = 0.3
 """Who stands goes on when it gets so far: it does not start for every hand's breadth."""
 _THERE_M = 0.02

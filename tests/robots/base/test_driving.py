@@ -18,6 +18,7 @@ from mend.robots.base.body import BasePose
 from mend.robots.base.monitors import BaseView
 from mend.robots.base.subsystem import BaseSubsystem
 from mend.robots.catalogue import Catalogue
+from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.monitor import for_view
 from mend.robots.link.messages import (
     Finished,
@@ -227,6 +228,49 @@ def test_an_interrupt_makes_it_brake_and_a_retreat_ends_it_where_it_stands() -> 
     assert bench.cart.place == stood
     bench.send(Resume(execution="e1"))
     assert "is not held" in bench.of(Rejected)[-1].reason
+
+
+class Gates:
+    """Ways through a gate that may be closed."""
+
+    closed = False
+
+    def path(self, here: BasePose, to: BasePose) -> list[tuple[float, float]]:  # noqa: ARG002
+        if self.closed:
+            raise CommandError("the gate is closed, and there is no other way")
+        return [(2.0, 2.0), (to.x, to.y)]
+
+
+def test_it_takes_the_way_that_its_ways_give() -> None:
+    bench = CartBench(ways=Gates())
+    bench.start(place="far")
+    nearest_m = math.inf
+    while bench.robot.advance(PERIOD_S):
+        nearest_m = min(nearest_m, bench.cart.pose().distance_m(BasePose(2.0, 2.0, 0.0)))
+    assert nearest_m < 0.5
+    assert is_at(bench, PLACES["far"])
+
+
+def test_where_there_is_no_way_it_refuses_or_tells_of_it_with_the_reason() -> None:
+    gates = Gates()
+    bench = CartBench(ways=gates)
+    bench.start(place="far")
+    bench.run_for(1.0)
+    bench.send(Interrupt(retreat=False))
+    bench.run()
+    gates.closed = True
+    bench.send(Resume(execution="e1"))
+    issue = bench.run_until(IssueDetected)
+    assert issue.issue == "blocked"
+    assert issue.detection is not None
+    assert issue.detection.explanation == "the gate is closed, and there is no other way"
+    bench.send(Look(expect="way_clear", within_s=0.0))
+    bench.run()
+    assert bench.of(Looked)[-1].fulfilled is False
+    bench.send(Interrupt(retreat=True))
+    bench.run()
+    bench.start(place="far")
+    assert bench.of(Rejected)[-1].reason == "the gate is closed, and there is no other way"
 
 
 def test_it_slows_down_as_it_is_told() -> None:
