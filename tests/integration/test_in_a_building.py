@@ -44,7 +44,7 @@ async def test_shut_doors_are_asked_about_and_the_rooms_are_reached(tmp_path: Pa
         view = await service.runtime.wait_for_end(run.id)
         events = list(await service.journal.read(0, 100_000, run.id))
     assert view.status is RunStatus.FINISHED, view.result
-    issues = {each.issue for each in events if isinstance(each, ev.IssueDetected)}
+    issues = {each.issue for each in events if isinstance(each, ev.IssueRaised)}
     assert issues == {"door_closed"}
     resolved = [each for each in events if isinstance(each, ev.Resolved)]
     assert resolved
