@@ -49,6 +49,7 @@ class Buildings:
             *_beside_floors(scene, building),
             *_beside_lanes(scene, building),
             *_not_for_bases(nodes),
+            *_on_other_floors(scene, building, nodes),
         ]
 
     def train_colors(self, scene: Scene) -> "ColorModel":
@@ -166,6 +167,22 @@ def _not_for_bases(nodes: Sequence[GoalNode | BehaviorNode]) -> list[SceneProble
         )
         for name, node in others.items()
     ]
+
+
+def _on_other_floors(
+    scene: Scene, building: Building, nodes: Sequence[GoalNode | BehaviorNode]
+) -> list[SceneProblem]:
+    """Places of leaves on floors where no robot is: none rides an elevator."""
+    floors = {floor_at(building, each.z) for each in _bases(scene)}
+    named = [each.place for each in nodes if isinstance(each, BehaviorNode)]
+    problems = []
+    for name in dict.fromkeys(named):
+        place = scene.places.get(name or "")
+        floor = None if place is None else floor_at(building, place.pose.z or 0.0)
+        if name is not None and floor is not None and floor not in floors:
+            message = f"no robot begins on {floor}, and none here rides an elevator to '{name}'"
+            problems.append(SceneProblem(("places", name), message))
+    return problems
 
 
 BUILDINGS = Buildings()

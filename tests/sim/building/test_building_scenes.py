@@ -68,3 +68,15 @@ def test_what_no_base_can_do_is_told_once() -> None:
 def test_names_of_places_become_names_of_scenes() -> None:
     assert scene_name("F1/101") == "F1-101"
     assert scene_name("1/tea room") == "L1-tea_room"
+
+
+def test_a_place_on_a_floor_without_a_robot_is_told() -> None:
+    scene = scene_of(made_up(floors=2), "office", 1)
+    places = sorted(each for each in scene.places if each[:4] in ("F1-1", "F2-2"))
+    leaves = [
+        BehaviorNode(parent=None, name=each, behavior="go_to", parameters={"place": each})
+        for each in places
+    ]
+    problems = told(scene, *leaves)
+    assert [where[1] for where, _ in problems] == [each for each in places if each[0:2] == "F2"]
+    assert problems[0][1].startswith("no robot begins on F2")
