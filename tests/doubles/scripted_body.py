@@ -58,7 +58,7 @@ class ScriptedCamera:
             picture = scene.picture(time=self._body.time_s())
             if self._body.head_noisy:
                 # Enough to tell two pictures of the same apart.
-                picture.bgr[0, 0] = self.pictures_taken % 251
+                picture.bgr[:, ::8, 0] ^= np.uint8(self.pictures_taken % 4)
             if self._last is not None and self._body.head_frozen:
                 picture = replace(self._last, time=picture.time)
             self._last = picture

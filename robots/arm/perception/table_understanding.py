@@ -14,7 +14,7 @@ from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.obstruction import Obstruction
 from mend.robots.vision.occupancy import Room
 from mend.robots.vision.presence import Presence, judge_presence
-from mend.robots.vision.scene_change import is_same, shows_change, still_measures
+from mend.robots.vision.scene_change import differs_all_over, is_same, shows_change, still_measures
 from mend.robots.vision.seen_box import SeenBox
 from mend.robots.vision.table_view import TableView, boxes_of, view_table
 from mend.robots.vision.tracking import LastSeen, Spot
@@ -149,7 +149,7 @@ class TableUnderstanding:
         ):
             self._seen = seen = _Seen(image, image, held, blind)
         else:
-            self.camera_is_noisy = True
+            self.camera_is_noisy |= differs_all_over(seen.latest, image)
             if doubted or not _still_measures_all(seen, image):
                 self._seen = seen = _Seen(image, image, held, blind)
         seen.latest = image
