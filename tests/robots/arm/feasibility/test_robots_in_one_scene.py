@@ -13,7 +13,7 @@ ACROSS = Base(x=1.04, y=0.0, yaw=np.pi)
 
 HERE = Base(x=0.0, y=0.0)
 END = Base(x=0.52, y=2.0, yaw=-np.pi / 2)
-"""Its gripper rests beside the middle of the table, on the first robot's side."""
+"""Its gripper rests beside the table, on the first robot's side: near, as the table is narrow."""
 LONG = (0.05, 0.40, 0.05)
 
 
@@ -27,7 +27,7 @@ def told(
     colors = [(0.9, 0.1, 0.1), (0.1, 0.2, 0.9)]
     scene = Scene(
         name="shared",
-        table=Table(height=0.70, center=(0.52, 0.0), size=(0.44, 1.40)),
+        table=Table(height=0.70, center=(0.52, 0.0), size=(0.12, 1.40)),
         objects={
             name: SceneObject(color=color, size=size, pose=Pose(x=start[0], y=start[1]))
             for name, color, (start, _) in zip(names, colors, ways, strict=False)
@@ -72,7 +72,7 @@ def test_arms_that_rest_in_one_place_are_refused() -> None:
 
 
 def test_a_part_that_would_always_be_taken_where_another_arm_rests_is_refused() -> None:
-    ways = [((0.45, -0.2), (0.45, 0.0))]
+    ways = [((0.50, -0.2), (0.50, 0.0))]
     robots = {"left": HERE, "end": END}
     assert told(ways, robots) == []
     (message,) = told(ways, robots, LONG)
@@ -84,7 +84,7 @@ def test_a_part_that_would_always_be_taken_where_another_arm_rests_is_refused() 
 
 def test_a_robot_that_may_never_begin_anything_is_refused() -> None:
     # All that the first robot reaches the one across reaches, too, and that has the room.
-    ways = [((0.45, 0.3), (0.45, 0.2))]
+    ways = [((0.50, 0.3), (0.50, 0.2))]
     robots = {"left": HERE, "right": ACROSS, "end": END}
     assert told(ways, robots) == []
     (message,) = told(ways, robots, LONG)
