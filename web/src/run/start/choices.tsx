@@ -55,6 +55,7 @@ export function siteWords({ world, robots }: SiteView): string {
 const WORLDS: Readonly<Record<string, string>> = {
   workcell: "A PR2 at a table, simulated with its cameras and contacts.",
   tabletop: "The same task without physics: quick, for trying things out.",
+  building: "Floors with doors, and robots that drive there.",
   live: "Real robots that are connected to this service.",
 };
 

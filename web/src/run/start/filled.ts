@@ -44,10 +44,11 @@ export async function readChoices(): Promise<Choices> {
   return { trees, worlds: worlds.toSorted((a, b) => rank(a) - rank(b)), sites, scenarios, robots };
 }
 
-/** Simulated worlds first, and of these the fullest. */
+/** Simulated worlds first, and of these the fullest; most tasks are not of buildings. */
 function rank({ name }: WorldView): number {
   if (name === PREFERRED_WORLD) return 0;
-  return name === "live" ? 2 : 1;
+  if (name === "building") return 2;
+  return name === "live" ? 3 : 1;
 }
 
 /** What the form holds at first. */
