@@ -20,8 +20,9 @@ Points = NDArray[np.float64]
 CELL_M = 0.05
 HALF_M = 4.0
 """The grid reaches so far from the base: beams a degree apart leave no holes in walls that near."""
-SPARE_M = 0.05
-"""It keeps so far from everything: more than the window does, by what a cell is imprecise."""
+SPARE_M, TIGHT_M = 0.05, 0.035
+"""It keeps so far from everything, more than the window does as cells are imprecise; and no nearer
+where there is no other way, or on one that it has taken: noise is not to close that again."""
 _SIDE = 2 * round(HALF_M / CELL_M) + 1
 _FREE, _CLOSE = 8, 24
 """The weights of a cell in the open and of one beside what it must not touch: thrice as long."""
@@ -61,7 +62,7 @@ class LocalRoute:
 class Ends:
     """Where a route may lead: `targets` (k, 2), to the last rather than to any before it.
 
-    `longest_m` (k,) is what the routes there may cost.
+    `longest_m` (k,) is how long the routes there may be.
     """
 
     targets: Points
@@ -78,22 +79,26 @@ def find_route(
     radius_m: float,
     carrot_m: float,
     before: Points,
+    spare_m: float = SPARE_M,
 ) -> LocalRoute:
     """The way to the last of the ends that can be reached by a base of `radius_m`.
 
-    `points` (n, 2) is what is to be kept clear of; the carrot is at most `carrot_m` off. `before`
-    (k, 2) is the way that was found a cycle ago: it is kept unless another is a good deal shorter.
+    `points` (n, 2) is what is to be kept clear of by `spare_m`; the carrot is at most `carrot_m`
+    off. `before` (k, 2) is the way that was found a cycle ago: it is kept unless another is a good
+    deal shorter.
     """
     corner = (np.round(np.array(here) / CELL_M) - _SIDE // 2) * CELL_M
     near = np.abs(points - np.array(here)).max(axis=1, initial=0.0) < HALF_M + radius_m
     weights = np.empty((_SIDE, _SIDE), np.uint8)
-    _spread(weights, points[near] - corner, radius_m + SPARE_M)
-    _prefer(weights, ends.targets - corner, *_ON_WAY)
-    _prefer(weights, before - corner, *_KEPT)
+    kept = _marked(before - corner)
+    _spread(weights, points[near] - corner, radius_m + spare_m, radius_m + TIGHT_M, kept)
+    _prefer(weights, _marked(ends.targets - corner), *_ON_WAY)
+    _prefer(weights, kept, *_KEPT)
     cells = np.round((ends.targets - corner) / CELL_M).astype(np.int64)
     passed = np.empty((_SIDE * _SIDE, 2), np.int64)
     found = np.zeros(4, np.int64)
-    _search(weights, cells, ends.longest_m * _COST_PER_M, carrot_m / CELL_M, passed, found)
+    longest = ends.longest_m * _STRAIGHT / CELL_M
+    _search(weights, cells, longest, carrot_m / CELL_M, passed, found)
     reached, count, chosen, cost = (int(each) for each in found)
     if reached < 0:
         return LocalRoute(None, here, NO_WAY, math.inf)
@@ -104,27 +109,33 @@ def find_route(
 
 
 @compiled
-def _prefer(weights: Any, way: Any, of: int, parts: int) -> None:
-    """Make what lies near a way shorter, `of` so many `parts` what it was."""
-    side = weights.shape[0]
-    marked = np.zeros((side, side), np.uint8)
+def _marked(way: Any) -> Any:
+    """Which cells lie on a way, or near it."""
+    marked = np.zeros((_SIDE, _SIDE), np.uint8)
     reach = int(_ON_IT_M / CELL_M)
     for number in range(way.shape[0]):
         column, row = round(way[number, 0] / CELL_M), round(way[number, 1] / CELL_M)
-        for to_row in range(max(0, row - reach), min(side, row + reach + 1)):
-            for to_column in range(max(0, column - reach), min(side, column + reach + 1)):
+        for to_row in range(max(0, row - reach), min(_SIDE, row + reach + 1)):
+            for to_column in range(max(0, column - reach), min(_SIDE, column + reach + 1)):
                 marked[to_row, to_column] = 1
-    for row in range(side):
-        for column in range(side):
+    return marked
+
+
+@compiled
+def _prefer(weights: Any, marked: Any, of: int, parts: int) -> None:
+    """Make marked cells shorter, `of` so many `parts` what they were."""
+    for row in range(_SIDE):
+        for column in range(_SIDE):
             if marked[row, column] != 0:
                 weights[row, column] = weights[row, column] * of // parts
 
 
 @compiled
-def _spread(weights: Any, points: Any, blocked_m: float) -> None:
+def _spread(weights: Any, points: Any, blocked_m: float, tight_m: float, kept: Any) -> None:
     """Write how near each cell is to what is blocked, 0 where it is blocked itself.
 
-    Where the base is stays free: what is nearer already it may leave.
+    Where the base is stays free: what is nearer already it may leave. Cells that are `kept` are
+    blocked by what is nearer than `tight_m`.
     """
     side = weights.shape[0]
     middle = (side // 2) * CELL_M
@@ -140,6 +151,10 @@ def _spread(weights: Any, points: Any, blocked_m: float) -> None:
             first = max(0, math.ceil((x - half_m) / CELL_M))
             last = min(side - 1, math.floor((x + half_m) / CELL_M))
             for column in range(first, last + 1):
+                if kept[row, column] != 0:
+                    square = (column * CELL_M - x) ** 2 + (row * CELL_M - y) ** 2
+                    if square >= tight_m * tight_m:
+                        continue
                 weights[row, column] = 0
     _measure_distances(weights)
     for row in range(side):
@@ -202,7 +217,7 @@ def _least_cost(rows: int, columns: int) -> int:
 
 
 @compiled
-def _settle(weights: Any, wanted: int, costs: Any, parents: Any) -> None:
+def _settle(weights: Any, wanted: int, costs: Any, lengths: Any, parents: Any) -> None:
     """A* from the middle, until `wanted` is settled; costs of what is not are _NEVER.
 
     What waits is in buckets by what the whole way costs at least.
@@ -216,6 +231,7 @@ def _settle(weights: Any, wanted: int, costs: Any, parents: Any) -> None:
     wanted_row, wanted_column = wanted // side, wanted % side
     start = (side // 2) * side + side // 2
     tentative[start], cells[0], following[0] = 0, start, -1
+    lengths[start] = 0
     least = _least_cost(side // 2 - wanted_row, side // 2 - wanted_column)
     heads[least % _BUCKETS] = 0
     entries, waiting = 1, 1
@@ -246,6 +262,7 @@ def _settle(weights: Any, wanted: int, costs: Any, parents: Any) -> None:
                 passed = cost + step * flat[to]
                 if passed < tentative[to]:
                     tentative[to], parents[to] = passed, cell
+                    lengths[to] = lengths[cell] + step
                     whole = passed + _least_cost(to_row - wanted_row, to_column - wanted_column)
                     cells[entries], following[entries] = to, heads[whole % _BUCKETS]
                     heads[whole % _BUCKETS] = entries
@@ -270,15 +287,19 @@ def _search(
             wanted = row * side + column
     costs = np.full(side * side, _NEVER, np.int32)
     parents = np.full(side * side, -1, np.int32)
+    lengths = np.zeros(side * side, np.int32)
     if wanted >= 0:
-        _settle(weights, wanted, costs, parents)
+        _settle(weights, wanted, costs, lengths, parents)
     found[0], found[2] = -1, -1
     cell = -1
     for number in range(targets.shape[0]):
         column, row = targets[number, 0], targets[number, 1]
         inside = column >= 0 and column < side and row >= 0 and row < side
-        if inside and costs[row * side + column] <= longest[number]:
-            cell = row * side + column
+        if not inside:
+            continue
+        at = row * side + column
+        if costs[at] != _NEVER and lengths[at] <= longest[number]:
+            cell = at
             found[0], found[3] = number, costs[cell]
     middle = side // 2
     count = 0

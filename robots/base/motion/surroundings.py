@@ -17,10 +17,12 @@ _NEAR_M = 6.0
 """What is farther away is not remembered."""
 _REMEMBERED_S = 15.0
 """What something else hides is believed to be there for so long."""
-_CELL_M = 0.05
+_CELL_M = 0.02
 """Of what is remembered one point a cell is enough."""
 _BEHIND_M = 0.1
 """So much nearer than what is seen, or farther: an edge seen by another beam may differ by less."""
+_HIDDEN_M = 0.03
+"""What lies so far behind what is seen there is hidden: more than a laser's noise."""
 _MOVED_S = 0.3
 """What came to where nothing was so long ago moves."""
 _FASTEST_M_S = 1.5
@@ -125,11 +127,31 @@ class Surroundings:
         since_s = np.concatenate([np.full(len(stood), before.scan.time), self._hidden_since_s])
         away_m, sees_m = now.range_m(points)
         kept = (away_m < _NEAR_M) & (since_s > now.scan.time - _REMEMBERED_S)
-        kept &= ~(sees_m > away_m - _BEHIND_M)
+        kept &= ~(sees_m > away_m - _HIDDEN_M)
         points, since_s = points[kept], since_s[kept]
+        hidden = ~_beside(points, now)
+        points, since_s = points[hidden], since_s[hidden]
         cells = np.round(points / _CELL_M).astype(np.int64)
         _, first = np.unique(cells[:, 0] * 1_000_003 + cells[:, 1], return_index=True)
         self._hidden, self._hidden_since_s = points[first], since_s[first]
+
+
+def _beside(points: Points, now: _Placed) -> NDArray[np.bool_]:
+    """Which of some near points (n,) are as good as what a scan shows: a cell off, or less."""
+    side = 2 * round(_NEAR_M / _CELL_M) + 5
+    corner = np.array([now.at.x, now.at.y]) - (side // 2) * _CELL_M
+
+    def cells(of: Points) -> NDArray[np.int64]:
+        return np.round((of - corner) / _CELL_M).astype(np.int64)
+
+    shown = cells(now.points)
+    shown = shown[((shown > 0) & (shown < side - 1)).all(axis=1)]
+    marked = np.zeros((side, side), np.bool_)
+    for across in (-1, 0, 1):
+        for along in (-1, 0, 1):
+            marked[shown[:, 0] + across, shown[:, 1] + along] = True
+    at = cells(points)
+    return np.asarray(marked[at[:, 0], at[:, 1]])
 
 
 def points_of(scan: RangeScan, at: BasePose) -> Points:

@@ -8,7 +8,14 @@ from numpy.typing import NDArray
 
 from mend.robots.base.body import BasePose, DriveLimits, Velocity
 from mend.robots.base.motion.dynamic_window import DynamicWindow, Steering
-from mend.robots.base.motion.local_route import NO_WAY, SPARE_M, Ends, LocalRoute, find_route
+from mend.robots.base.motion.local_route import (
+    NO_WAY,
+    SPARE_M,
+    TIGHT_M,
+    Ends,
+    LocalRoute,
+    find_route,
+)
 from mend.robots.base.motion.polyline import Polyline
 from mend.robots.base.motion.surroundings import Seen, in_frame_of
 
@@ -20,7 +27,7 @@ _EVERY_M = 0.05
 _STAND_OFF_M = 0.1
 """It stops so far before the point beyond which it cannot get."""
 _DETOUR_M = 8.0
-"""It goes round things by no more than this (of a route's cost), but tells of them."""
+"""It goes round things by no more than this, but tells of them."""
 _GETS_ON_M = 0.3
 """Who stands goes on when it gets so far: it does not start for every hand's breadth."""
 _THERE_M = 0.02
@@ -66,7 +73,7 @@ class WayFollower:
     def gets_on(self, here: BasePose, points: Points, by_m: float = _GETS_ON_M) -> bool:
         """Whether it could go on along its way, to its end or by so much at least."""
         ahead_m = self._samples_m()
-        return self._leads_on(self._route(here, points, ahead_m), ahead_m, by_m)
+        return self._leads_on(self._route(here, points, ahead_m, by_m), ahead_m, by_m)
 
     @property
     def turns_at_end(self) -> bool:
@@ -102,11 +109,18 @@ class WayFollower:
         count = max(1, math.ceil((end_m - self._along_m) / _EVERY_M))
         return np.linspace(self._along_m, end_m, count + 1)[1:]
 
-    def _route(self, here: BasePose, points: Points, ahead_m: Points) -> LocalRoute:
+    def _route(self, here: BasePose, points: Points, ahead_m: Points, by_m: float) -> LocalRoute:
+        """As roomy as there is one that leads on by so much, else as tight as it may be."""
         limits = self._limits
         carrot_m = 0.4 + limits.speed_m_s**2 / (2.0 * limits.acceleration_m_s2)
         ends = Ends(self._way.points_at(ahead_m), ahead_m - self._along_m + _DETOUR_M)
-        return find_route((here.x, here.y), points, ends, self._radius_m, carrot_m, self._kept)
+
+        def route(spare_m: float) -> LocalRoute:
+            at = (here.x, here.y)
+            return find_route(at, points, ends, self._radius_m, carrot_m, self._kept, spare_m)
+
+        found = route(SPARE_M)
+        return found if self._leads_on(found, ahead_m, by_m) else route(TIGHT_M)
 
     def _leads_on(self, route: LocalRoute, ahead_m: Points, by_m: float) -> bool:
         if route.reached is None:
@@ -122,10 +136,10 @@ class WayFollower:
             self.left_m, self.barred = off_m, False
             return Steering(None, turn_rad)
         ahead_m = self._samples_m()
-        route = self._route(here, points, ahead_m)
-        self._kept = route.way
-        stood = self.barred and abs(now.speed_m_s) < _STANDS_M_S
+        stood = self.barred and now.speed_m_s < _STANDS_M_S
         by_m = _GETS_ON_M if stood else _STAND_OFF_M
+        route = self._route(here, points, ahead_m, by_m)
+        self._kept = route.way
         if not self._leads_on(route, ahead_m, by_m):
             self.barred = True
             return Steering(None, 0.0)
