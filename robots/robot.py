@@ -312,7 +312,7 @@ class Robot:
                 f"execution '{resume.execution}' is {execution.state}; only a held one can resume"
             )
         self._drop_look()
-        self._activity = execution.resume(resume.object_at)
+        self._activity = execution.resume(resume)
 
     def _look(self, command_id: str, look: Look) -> None:
         held = None if self._execution is None or self._execution.over else self._execution

@@ -21,6 +21,7 @@ from mend.robots.body import CameraImage
 from mend.robots.catalogue import Catalogue
 from mend.robots.execution.behavior import Behavior, of_kind
 from mend.robots.execution.execution import AnyExecution
+from mend.robots.execution.execution_state import ExecutionState
 from mend.robots.execution.monitor import AnyMonitor, for_view
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
@@ -124,9 +125,9 @@ class ArmSubsystem:
         return routine if look.expect is None else self._planning_ahead(routine)
 
     def _planning_ahead(self, routine: Routine[Looked]) -> Routine[Looked]:
-        """Whoever waits for help uses the time."""
+        """Whoever waits for help with what is not done uses the time."""
         looked = yield from routine
-        if self._work is not None:
+        if self._work is not None and self._work.progress.state is not ExecutionState.FINISHED:
             plan_ahead(self._work)
         return looked
 

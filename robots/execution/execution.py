@@ -10,7 +10,7 @@ from mend.robots.execution.monitor import BEFORE_FIRST_STEP, Reaction
 from mend.robots.execution.progress import G
 from mend.robots.execution.routine import Routine
 from mend.robots.execution.watch import Interruption
-from mend.robots.link.messages import Finished, Holding, ReportBody
+from mend.robots.link.messages import Finished, Holding, ReportBody, Resume
 
 
 class Execution(ABC, Generic[G]):
@@ -60,11 +60,8 @@ class Execution(ABC, Generic[G]):
         """Do all of it."""
         return self._attempt(resumed=False)
 
-    def resume(self, object_at: tuple[float, float] | None = None) -> Routine[None]:  # noqa: ARG002
-        """Go on after a hold, where the body allows it. Raises `IllegalTransitionError`.
-
-        `object_at`: where the service has its object (base frame), None if it may be anywhere.
-        """
+    def resume(self, told: Resume) -> Routine[None]:  # noqa: ARG002 - what concerns one body only
+        """Go on after a hold, where the body allows it. Raises `IllegalTransitionError`."""
         self._progress.move_to(ExecutionState.PREPARING)
         return self._attempt(resumed=True)
 

@@ -18,7 +18,7 @@ from mend.robots.execution.execution_state import ExecutionState
 from mend.robots.execution.monitor import AnyMonitor, Reaction
 from mend.robots.execution.routine import Routine
 from mend.robots.execution.watch import Interruption
-from mend.robots.link.messages import Location, Resumed
+from mend.robots.link.messages import Location, Resume, Resumed
 from mend.robots.vision.obstruction import Obstruction
 from mend.robots.vision.presence import Presence
 
@@ -64,9 +64,9 @@ class ArmExecution(Execution[ArmProgress]):
         """The object and its place, if it was placed there and that could not be seen."""
         return self._work.unconfirmed
 
-    def resume(self, object_at: tuple[float, float] | None = None) -> Routine[None]:
-        self._progress.object_at = object_at
-        return super().resume(object_at)
+    def resume(self, told: Resume) -> Routine[None]:
+        self._progress.object_at = told.object_at
+        return super().resume(told)
 
     # --- What it does -------------------------------------------------------------------------
 

@@ -149,7 +149,7 @@ class TableUnderstanding:
         ):
             self._seen = seen = _Seen(image, image, held, blind)
         else:
-            self.camera_is_noisy |= differs_all_over(seen.latest, image)
+            self.camera_is_noisy = self.camera_is_noisy or differs_all_over(seen.latest, image)
             if doubted or not _still_measures_all(seen, image):
                 self._seen = seen = _Seen(image, image, held, blind)
         seen.latest = image

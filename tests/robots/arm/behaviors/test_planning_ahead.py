@@ -89,3 +89,15 @@ def test_looks_that_nobody_waits_for_plan_nothing() -> None:
     bench.look()
     bench.run()
     assert body.plans == 0
+
+
+def test_what_is_done_is_not_planned_again() -> None:
+    body = CountingBody()
+    bench = RobotBench(body=body)
+    bench.start("pink_bar")
+    bench.run()
+    assert bench.of(Finished)
+    planned = body.plans
+    bench.look(expect="at_place", object="pink_bar", place="left", within_s=2.0)
+    bench.run()
+    assert body.plans == planned
