@@ -1,6 +1,7 @@
 """A base that drives: sending it on its way, a control cycle at a time."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,6 +15,14 @@ from mend.robots.execution.effector import Effector
 _SLOW_M_S, _SLOW_RAD_S = 0.05, 0.1
 _BEHIND_M = 0.2
 """A door is so near to where the laser sees it, by the map."""
+
+
+@dataclass(frozen=True, slots=True)
+class Barrier:
+    """What leaves a base no way on, so far from its rim; `door` if its map has one there."""
+
+    away_m: float
+    door: str | None
 
 
 class Base(Effector[BaseBody]):
@@ -67,29 +76,20 @@ class Base(Effector[BaseBody]):
         """How it gets on along its way; None while it is on none."""
         return self._following
 
-    def in_the_way_m(self) -> float | None:
-        """How far what leaves it no way on is from its rim; None where it gets on."""
+    def barrier(self) -> Barrier | None:
+        """What leaves it no way on; None where it gets on."""
         following, here = self._following, self.body.pose()
         if following is None or not following.barred:
             return None
         points = self._surroundings.seen.points
         met = following.first_met(points)
-        away_m = np.hypot(points[:, 0] - here.x, points[:, 1] - here.y).min(initial=math.inf)
-        if met is not None:
-            away_m = math.dist(met, (here.x, here.y))
-        return max(0.0, float(away_m) - self.body.radius_m)
-
-    def door_in_the_way(self) -> str | None:
-        """The door, by its map, that leaves it no way on; None for anything else."""
-        following, here = self._following, self.body.pose()
-        if following is None or not following.barred:
-            return None
-        met = following.first_met(self._surroundings.seen.points)
         if met is None:
-            return None
-        share = 1.0 + _BEHIND_M / max(math.dist(met, (here.x, here.y)), 1e-6)
+            nearest_m = np.hypot(points[:, 0] - here.x, points[:, 1] - here.y).min(initial=math.inf)
+            return Barrier(max(0.0, float(nearest_m) - self.body.radius_m), None)
+        away_m = math.dist(met, (here.x, here.y))
+        share = 1.0 + _BEHIND_M / max(away_m, 1e-6)
         beyond = here.x + share * (met[0] - here.x), here.y + share * (met[1] - here.y)
-        return self.ways.door_at(here, beyond)
+        return Barrier(max(0.0, away_m - self.body.radius_m), self.ways.door_at(here, beyond))
 
     def gets_to(self, to: BasePose) -> bool:
         """Whether what is seen leaves a way on to a pose. Raises `CommandError`."""

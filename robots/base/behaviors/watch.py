@@ -39,6 +39,7 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
         """Let the monitors of this step judge. Raises `Interruption` for the first that must."""
         progress, now = self._progress, self._base.body.time_s()
         drive, since_s = progress.drive, progress.waits_since_s
+        barrier = self._base.barrier()
         self.show(
             BaseView(
                 time_s=now,
@@ -46,8 +47,8 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
                 phase=progress.phase,
                 pose=self._base.body.pose(),
                 goal=None if drive is None else drive.to,
-                in_the_way_m=self._base.in_the_way_m(),
-                door=self._base.door_in_the_way(),
+                in_the_way_m=None if barrier is None else barrier.away_m,
+                door=None if barrier is None else barrier.door,
                 waited_s=0.0 if since_s is None else now - since_s,
                 stalled_s=progress.stalled_s,
                 no_way=progress.no_way,
