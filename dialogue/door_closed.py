@@ -6,7 +6,7 @@ from mend.tasks.resolution import Resolution
 
 script = offer_script(
     Offer(
-        question="I cannot go on.{why} Can you open it?",
+        question="I cannot go on.{why} Can you open the door?",
         failed="I have now been stopped {times} by a shut door.",
         yes_effect="You open the door; I go on as soon as I see it open ({attempt}).",
         help=Help.CLEAR_WAY,

@@ -13,14 +13,20 @@ WorldCheck = Callable[[Scene, Sequence[GoalNode | BehaviorNode]], list[SceneProb
 
 
 class WorldChecks:
-    """The worlds that check scenes and can run here."""
+    """The worlds that check scenes and can run here.
 
-    def __init__(self, adapters: Mapping[str, WorldAdapter]) -> None:
+    Each checks the scenes that are for it; one that was `asked_for` checks whatever it is given.
+    """
+
+    def __init__(self, adapters: Mapping[str, WorldAdapter], *, asked_for: bool = False) -> None:
         self._adapters = adapters
+        self._asked_for = asked_for
 
-    def __reduce__(self) -> "tuple[Callable[[list[str]], WorldChecks], tuple[list[str]]]":
+    def __reduce__(
+        self,
+    ) -> "tuple[Callable[[list[str], bool], WorldChecks], tuple[list[str], bool]]":
         # Another process loads them itself: a world need not be picklable.
-        return _load_worlds, (list(self._adapters),)
+        return _load_worlds, (list(self._adapters), self._asked_for)
 
     def only(self, world: str) -> "WorldChecks":
         """One of the worlds alone.
@@ -31,7 +37,7 @@ class WorldChecks:
             known = ", ".join(sorted(self._adapters))
             raise WrongInputError(f"there is no world '{world}'; there are {known}")
         self._adapters[world].check_available()
-        return WorldChecks({world: self._adapters[world]})
+        return WorldChecks({world: self._adapters[world]}, asked_for=True)
 
     def adapter(self, world: str) -> WorldAdapter:
         """A world by its name."""
@@ -51,20 +57,19 @@ class WorldChecks:
         return {name: check(scene, tree.nodes) for name, check in self._checks(scene)}
 
     def _checks(self, scene: Scene) -> list[tuple[str, WorldCheck]]:
-        """How the worlds that a scene is for check it; one that was asked for alone always does."""
         found = []
         for name, adapter in sorted(self._adapters.items()):
-            asked = len(self._adapters) == 1 or _takes(adapter, scene)
+            asked = self._asked_for or _takes(adapter, scene)
             check = self.check_of(name) if asked and _can_run(adapter) else None
             if check is not None:
                 found.append((name, check))
         return found
 
 
-def _load_worlds(names: list[str]) -> WorldChecks:
+def _load_worlds(names: list[str], asked_for: bool) -> WorldChecks:
     """The installed worlds of these names."""
     installed = load_plugins("mend.worlds")
-    return WorldChecks({name: installed[name] for name in names})
+    return WorldChecks({name: installed[name] for name in names}, asked_for=asked_for)
 
 
 def load_world_checks() -> WorldChecks:

@@ -32,6 +32,8 @@ Name = Annotated[
 RIDE_S = 15.0
 """To call an elevator and to get in and out of it; a floor more takes `FLOOR_S`."""
 FLOOR_S = 5.0
+ON_FLOOR_M = 0.5
+"""What is so near to a floor's height is on it."""
 
 
 class PlaceKind(StrEnum):
@@ -83,6 +85,11 @@ class Floor(StrictModel):
     lanes: tuple[Lane, ...] = ()
     walls: tuple[tuple[Metres, Metres, Metres, Metres], ...] = ()
     doors: dict[Name, Door] = {}
+
+    @cached_property
+    def wall_segments(self) -> NDArray[np.float64]:
+        """Its walls as rows (n, 4), without its doors."""
+        return np.array(self.walls, np.float64).reshape(-1, 4)
 
     @cached_property
     def vector_map(self) -> VectorMap:
@@ -144,6 +151,13 @@ class Building:
         if not found:
             raise NotFoundError(f"the building '{self.name}' has no place '{name}'")
         raise NotFoundError(f"'{name}' is on several floors: say {' or '.join(found)}")
+
+    def floor_at(self, height_m: float) -> str | None:
+        """The floor at a height; None where there is none."""
+        for name, each in self.floors.items():
+            if abs(each.height - height_m) < ON_FLOOR_M:
+                return name
+        return None
 
     def of_kind(self, kind: PlaceKind) -> list[str]:
         """The full names of all places of one kind."""

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from mend.maps.building.building import Floor, Lane
 
 Matrix = NDArray[np.float64]
+Point = tuple[float, float]
 
 _STEP_M = 0.05
 
@@ -22,10 +23,15 @@ def distances_m(points: Matrix, segments: Matrix) -> Matrix:
     return np.asarray(np.hypot(away[..., 0], away[..., 1]).min(axis=1))
 
 
-def lane_clearance_m(floor: Floor, lane: Lane) -> float:
-    """How near a wall of its floor comes to a lane."""
-    walls = np.array(floor.walls, np.float64).reshape(-1, 4)
-    a, b = (np.array([floor.places[each].x, floor.places[each].y]) for each in lane.between)
+def clearance_m(start: Point, end: Point, segments: Matrix) -> float:
+    """How near the nearest of segments (m, 4) comes to a straight way; inf where there is none."""
+    a, b = np.array(start), np.array(end)
     steps = max(2, int(np.hypot(*(b - a)) / _STEP_M) + 1)
     points = a + np.linspace(0.0, 1.0, steps)[:, None] * (b - a)
-    return float(distances_m(points, walls).min())
+    return float(distances_m(points, segments).min())
+
+
+def lane_clearance_m(floor: Floor, lane: Lane) -> float:
+    """How near a wall of its floor comes to a lane."""
+    start, end = ((floor.places[each].x, floor.places[each].y) for each in lane.between)
+    return clearance_m(start, end, floor.wall_segments)

@@ -2,36 +2,34 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mend.maps.building.building import Building
+from mend.maps.building.clearance import clearance_m
 from mend.maps.building.crossing import crossed_by
-from mend.maps.navigation import Place
+from mend.maps.navigation import NavigationGraph, Place, WayKind
 from mend.robots.base.body import BasePose
 from mend.robots.execution.command_error import CommandError
 from mend.tasks.frames import Frame
 
 Point = tuple[float, float]
 
-_ON_FLOOR_M = 0.5
-
 
 class FloorWays:
     """`Ways` of one robot, whose base frame is `frame` in the building's; poses are in it.
 
-    `speed_m_s`: as fast as the robot is where nothing says less.
+    `speed_m_s`: as fast as the robot is where nothing says less; `needs_m`: so far from its middle
+    a wall has to be where it leaves the lanes. Doors are taken to be open: the robot will see.
     """
 
-    def __init__(self, building: Building, frame: Frame, speed_m_s: float) -> None:
+    def __init__(self, building: Building, frame: Frame, speed_m_s: float, needs_m: float) -> None:
         self._building = building
         self._frame = frame
         self._speed_m_s = speed_m_s
-        self._walls = {
-            name: np.array(each.walls, np.float64).reshape(-1, 4)
-            for name, each in building.floors.items()
-        }
+        self._needs_m = needs_m
+        self._graphs = {floor: _lanes_of(building, floor) for floor in building.floors}
 
     def path(self, here: BasePose, to: BasePose) -> Sequence[Point]:
         """The points to pass, the last one the goal's.
@@ -40,12 +38,14 @@ class FloorWays:
         """
         floor, goal_floor = self._floor(here), self._floor(to)
         if floor != goal_floor:
-            raise CommandError(f"I am on {floor}, and that is on {goal_floor}")
+            raise CommandError(f"the way from {floor} to {goal_floor} needs an elevator")
         start, goal = self._on_map(here), self._on_map(to)
-        if self._is_free(floor, start, goal):
-            return [(to.x, to.y)]
-        points = [start, *self._lanes(floor, start, goal), goal]
-        return [self._frame.to_robot(*each) for each in self._cut_short(floor, points)[1:]]
+        points = [start, *self._along_lanes(floor, start, goal), goal]
+        if self._is_wide(floor, points[0], points[2]):
+            del points[1]
+        if len(points) > 2 and self._is_wide(floor, points[-3], points[-1]):
+            del points[-2]
+        return [self._frame.to_robot(*each) for each in points[1:]]
 
     def door_at(self, here: BasePose, ahead: Point) -> str | None:
         """The door between a pose and a point ahead."""
@@ -56,51 +56,52 @@ class FloorWays:
                 return name
         return None
 
-    def _lanes(self, floor: str, start: Point, goal: Point) -> list[Point]:
+    def _along_lanes(self, floor: str, start: Point, goal: Point) -> list[Point]:
         """From the place that is nearest to the start to the one nearest to the goal."""
-        graph = self._building.graph
-        numbers = [graph.index(f"{floor}/{name}") for name in self._building.floors[floor].places]
-        first, last = (self._nearest(floor, numbers, each) for each in (start, goal))
+        graph = self._graphs[floor]
+        first, last = (self._nearest(floor, each) for each in (start, goal))
         path = graph.quickest_path(first, last, self._speed_m_s)
         if not path:
-            raise CommandError(
-                f"no lane leads from {graph.places[first].name} to {graph.places[last].name}"
-            )
+            names = graph.places[first].name, graph.places[last].name
+            raise CommandError(f"no lane leads from {names[0]} to {names[1]}")
         places = [graph.places[number] for number, _ in path]
-        if len({each.floor for each in places}) > 1:
-            raise CommandError(f"the way to {graph.places[last].name} leads over another floor")
         return [(each.x_m, each.y_m) for each in places]
 
-    def _nearest(self, floor: str, numbers: Sequence[int], point: Point) -> int:
+    def _nearest(self, floor: str, point: Point) -> int:
         """The nearest place that no wall is before. Raises `CommandError`."""
-        places = self._building.graph.places
-        ordered = sorted(numbers, key=lambda each: _distance_m(places[each], point))
-        for each in ordered:
-            if self._is_free(floor, point, (places[each].x_m, places[each].y_m)):
-                return each
-        raise CommandError("there are walls between me and every place that I know of here")
+        places, walls = self._graphs[floor].places, self._building.floors[floor].wall_segments
+        for number in sorted(range(len(places)), key=lambda each: _away_m(places[each], point)):
+            way = np.array([*point, places[number].x_m, places[number].y_m])
+            if not len(crossed_by(way, walls)):
+                return number
+        raise CommandError(f"there are walls all round ({point[0]:.2f}, {point[1]:.2f}) on {floor}")
 
-    def _cut_short(self, floor: str, points: list[Point]) -> list[Point]:
-        """Without going back to where the lanes begin, or beyond where they end."""
-        if len(points) > 3 and self._is_free(floor, points[0], points[2]):
-            points = [points[0], *points[2:]]
-        if len(points) > 3 and self._is_free(floor, points[-3], points[-1]):
-            points = [*points[:-2], points[-1]]
-        return points
-
-    def _is_free(self, floor: str, a: Point, b: Point) -> bool:
-        walls: NDArray[np.float64] = self._walls[floor]
-        return not len(crossed_by(np.array([*a, *b]), walls))
+    def _is_wide(self, floor: str, a: Point, b: Point) -> bool:
+        """Whether the straight way is wide enough to leave the lanes for."""
+        walls = self._building.floors[floor].wall_segments
+        return clearance_m(a, b, walls) >= self._needs_m
 
     def _floor(self, pose: BasePose) -> str:
-        for name, each in self._building.floors.items():
-            if abs(each.height - pose.z) < _ON_FLOOR_M:
-                return name
-        raise CommandError(f"no floor is {pose.z:g} m high")
+        floor = self._building.floor_at(pose.z)
+        if floor is None:
+            raise CommandError(f"no floor is {pose.z:g} m high")
+        return floor
 
     def _on_map(self, pose: BasePose) -> Point:
         return self._frame.to_scene(pose.x, pose.y)
 
 
-def _distance_m(place: Place, point: Point) -> float:
+def _lanes_of(building: Building, floor: str) -> NavigationGraph:
+    """The places and lanes of one floor, as if no door were ever locked."""
+    prefix = f"{floor}/"
+    places = [each for each in building.graph.places if each.name.startswith(prefix)]
+    lanes = [
+        replace(each, open_s=(), closed=False)
+        for each in building.graph.ways
+        if each.kind is not WayKind.ELEVATOR and each.a.startswith(prefix)
+    ]
+    return NavigationGraph(places, lanes)
+
+
+def _away_m(place: Place, point: Point) -> float:
     return math.hypot(place.x_m - point[0], place.y_m - point[1])

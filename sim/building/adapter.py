@@ -13,7 +13,6 @@ class BuildingAdapter(ListedWorld):
 
     name: ClassVar[str] = "building"
     maker: ClassVar[tuple[str, str]] = ("mend.sim.building.buildings", "BUILDINGS")
-    needs: ClassVar[dict[str, str]] = {"scipy": "SciPy", "numba": "Numba"}
     own_process = False
     lays_out_anything = False
     options = BuildingOptions

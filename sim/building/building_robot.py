@@ -94,13 +94,12 @@ class BuildingRobot:
         """Where it is to be one control cycle later, if nothing holds it up."""
         now = self._now = nearest_reached(self._now, self._wanted, LIMITS, PERIOD_S)
         turned = now.turn_rad_s * PERIOD_S
-        # On an arc: the chord of it, seen from its middle.
-        heading, chord_s = self.at.yaw + turned / 2.0, PERIOD_S
-        cos, sin = math.cos(heading) * chord_s, math.sin(heading) * chord_s
+        forward_m, left_m = now.forward_m_s * PERIOD_S, now.left_m_s * PERIOD_S
+        heading = self.at.yaw + turned / 2.0
         return replace(
             self.at,
-            x=self.at.x + now.forward_m_s * cos - now.left_m_s * sin,
-            y=self.at.y + now.forward_m_s * sin + now.left_m_s * cos,
+            x=self.at.x + forward_m * math.cos(heading) - left_m * math.sin(heading),
+            y=self.at.y + forward_m * math.sin(heading) + left_m * math.cos(heading),
             yaw=math.remainder(self.at.yaw + turned, math.tau),
         )
 

@@ -10,20 +10,22 @@ from mend.errors import WrongInputError
 from mend.maps.building.building import Building
 from mend.maps.building.clearance import distances_m, lane_clearance_m
 from mend.robots.base.behaviors.behavior import BaseBehavior
+from mend.robots.base.body import BasePose
 from mend.robots.base.floor_ways import FloorWays
 from mend.robots.base.subsystem import BaseSubsystem
 from mend.robots.catalogue import Catalogue
 from mend.robots.execution.behavior import of_kind
+from mend.robots.execution.command_error import CommandError
 from mend.robots.robot import Robot
 from mend.sim.building.building_robot import LIMITS, RADIUS_M, FloorPose
 from mend.sim.building.options import BuildingOptions
-from mend.sim.building.setting import building_of, floor_at, read_setting
+from mend.sim.building.setting import building_of, read_setting
 from mend.sim.building.world import BuildingWorld
 from mend.sim.shared_world import SharedWorld
 from mend.sim.world import WorldSetup
 from mend.sim.world_options import read_options
 from mend.tasks.definition import BehaviorNode, GoalNode
-from mend.tasks.frames import frames_of
+from mend.tasks.frames import Frame, frames_of
 from mend.tasks.plugins import load_plugins
 from mend.tasks.scene import Base, Scene
 from mend.tasks.scene_problem import SceneProblem
@@ -49,7 +51,7 @@ class Buildings:
             *_beside_floors(scene, building),
             *_beside_lanes(scene, building),
             *_not_for_bases(nodes),
-            *_on_other_floors(scene, building, nodes),
+            *_out_of_reach(scene, building, nodes),
         ]
 
     def train_colors(self, scene: Scene) -> "ColorModel":
@@ -79,7 +81,7 @@ class Buildings:
                         Catalogue.from_scene(frame.scene_to_robot(setup.scene)),
                         load_plugins("mend.behaviors"),
                         load_plugins("mend.monitors"),
-                        FloorWays(building, frame, LIMITS.speed_m_s),
+                        _ways(building, frame),
                     )
                 ],
             )
@@ -100,7 +102,7 @@ def _bases(scene: Scene) -> Sequence[Base]:
 
 
 def _start(building: Building, base: Base) -> FloorPose:
-    floor = floor_at(building, base.z)
+    floor = building.floor_at(base.z)
     if floor is None:
         raise WrongInputError(f"no floor of '{building.name}' is {base.z:g} m high")
     return FloorPose(floor, base.x, base.y, base.yaw)
@@ -117,7 +119,7 @@ def _beside_floors(scene: Scene, building: Building) -> list[SceneProblem]:
     return [
         SceneProblem(where, f"no floor is {z:g} m high; the floors are at {heights}")
         for where, z in stand
-        if floor_at(building, z) is None
+        if building.floor_at(z) is None
     ]
 
 
@@ -142,10 +144,10 @@ def _beside_lanes(scene: Scene, building: Building) -> list[SceneProblem]:
         for name, each in scene.places.items()
     ]
     for where, x, y, z in stand:
-        floor_name = floor_at(building, z)
+        floor_name = building.floor_at(z)
         if floor_name is None:
             continue
-        walls = np.array(building.floors[floor_name].walls, np.float64).reshape(-1, 4)
+        walls = building.floors[floor_name].wall_segments
         away_m = float(distances_m(np.array([[x, y]]), walls)[0])
         if away_m < needs_m:
             problems.append(SceneProblem(where, f"a wall is {away_m:.2f} m from here: {told}"))
@@ -169,20 +171,36 @@ def _not_for_bases(nodes: Sequence[GoalNode | BehaviorNode]) -> list[SceneProble
     ]
 
 
-def _on_other_floors(
+def _out_of_reach(
     scene: Scene, building: Building, nodes: Sequence[GoalNode | BehaviorNode]
 ) -> list[SceneProblem]:
-    """Places of leaves on floors where no robot is: none rides an elevator."""
-    floors = {floor_at(building, each.z) for each in _bases(scene)}
+    """Places of leaves to which no robot knows a way, and why the first does not."""
+    starts = [BasePose(each.x, each.y, each.yaw, each.z) for each in _bases(scene)]
+    ways, problems = _ways(building, Frame()), []
     named = [each.place for each in nodes if isinstance(each, BehaviorNode)]
-    problems = []
-    for name in dict.fromkeys(named):
-        place = scene.places.get(name or "")
-        floor = None if place is None else floor_at(building, place.pose.z or 0.0)
-        if name is not None and floor is not None and floor not in floors:
-            message = f"no robot begins on {floor}, and none here rides an elevator to '{name}'"
-            problems.append(SceneProblem(("places", name), message))
+    for name in dict.fromkeys(each for each in named if each in scene.places):
+        assert name is not None, "it is one of the places"
+        pose = scene.places[name].pose
+        reasons = [
+            _why_not(ways, each, BasePose(pose.x, pose.y, 0.0, pose.z or 0.0)) for each in starts
+        ]
+        if all(reasons):
+            problems.append(
+                SceneProblem(("places", name), f"no robot gets to '{name}': {reasons[0]}")
+            )
     return problems
+
+
+def _why_not(ways: FloorWays, here: BasePose, to: BasePose) -> str | None:
+    try:
+        ways.path(here, to)
+    except CommandError as error:
+        return str(error)
+    return None
+
+
+def _ways(building: Building, frame: Frame) -> FloorWays:
+    return FloorWays(building, frame, LIMITS.speed_m_s, RADIUS_M + SPARE_M)
 
 
 BUILDINGS = Buildings()

@@ -1,12 +1,12 @@
 """A door of the world: open or shut, by itself or by people."""
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from mend.maps.building.building import Door, DoorOpening
+from mend.maps.building.clearance import distances_m
 
 Point = tuple[float, float]
 
@@ -35,10 +35,7 @@ class WorldDoor:
 
     def distance_m(self, x: float, y: float) -> float:
         """How far a point is from the line between the posts."""
-        (x0, y0), (x1, y1) = self.plan.posts
-        along = np.array([x1 - x0, y1 - y0])
-        share = np.clip(np.array([x - x0, y - y0]) @ along / (along @ along), 0.0, 1.0)
-        return math.hypot(x - x0 - share * along[0], y - y0 - share * along[1])
+        return float(distances_m(np.array([[x, y]]), np.array([self.segment]))[0])
 
     def may_be_passed(self, time_s: float) -> bool:
         """Whether it is one of the times at which it is not locked."""

@@ -2,6 +2,8 @@
 
 import math
 import re
+from collections.abc import Container
+from itertools import chain, count
 
 from mend.errors import WrongInputError
 from mend.maps.building.building import Building, FloorPlace, PlaceKind
@@ -18,15 +20,19 @@ _LONGEST = 64
 def scene_of(building: Building, name: str, robots: int) -> Scene:
     """A scene with all places that are not on the way only, and so many robots.
 
-    A place is called after its floor and itself, as `F1-101`. Raises `WrongInputError` where there
+    A place is called after its floor and itself, as `F1-101`, and where two would be called alike
+    the second has a number. Raises `WrongInputError` where there
     is no room for all robots.
     """
-    places = {
-        scene_name(full): Place(pose=_pose(building, full))
+    named = [
+        full
         for kind in PlaceKind
         if kind is not PlaceKind.WAYPOINT
         for full in building.of_kind(kind)
-    }
+    ]
+    places: dict[str, Place] = {}
+    for full in named:
+        places[_unlike(scene_name(full), places)] = Place(pose=_pose(building, full))
     begins = _begins(building, robots)
     return Scene(
         name=name,
@@ -41,6 +47,12 @@ def scene_name(full: str) -> str:
     """What a place, `FLOOR/PLACE`, is called in scenes, whose names are plainer."""
     name = _ODD.sub("_", full.replace("/", "-"))
     return (name if name[0].isalpha() else f"L{name}")[:_LONGEST]
+
+
+def _unlike(name: str, others: Container[str]) -> str:
+    """The name, or one with a number where others are called so."""
+    tries = (f"{name[: _LONGEST - 1 - len(str(number))]}_{number}" for number in count(2))
+    return next(each for each in chain([name], tries) if each not in others)
 
 
 def _begins(building: Building, robots: int) -> list[Base]:

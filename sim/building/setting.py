@@ -8,13 +8,13 @@ from pydantic import ValidationError
 from mend.documents.problem import list_names
 from mend.documents.validation import describe_mistake
 from mend.errors import WrongInputError
-from mend.maps.building.building import Building, BuildingDocument
+from mend.maps.building.building import ON_FLOOR_M, Building, BuildingDocument
 from mend.maps.building.building_file import check_building
 from mend.tasks.scene import Scene
 from mend.tasks.scene_problem import SceneProblem
 
-ON_FLOOR_M = 0.5
-"""What is so near to a floor's height is on it; floors are at least twice as far apart."""
+_APART_M = 2 * ON_FLOOR_M
+"""Floors that are nearer to each other cannot be told apart by their heights."""
 
 
 def building_of(scene: Scene) -> Building:
@@ -42,14 +42,6 @@ def read_setting(scene: Scene) -> tuple[list[SceneProblem], Building | None]:
     return mistakes, None if mistakes else Building(document)
 
 
-def floor_at(building: Building, height_m: float) -> str | None:
-    """The floor at a height; None where there is none."""
-    for name, floor in building.floors.items():
-        if abs(floor.height - height_m) < ON_FLOOR_M:
-            return name
-    return None
-
-
 def _at(*where: str | int) -> tuple[str, ...]:
     return ("setting", *(str(each) for each in where))
 
@@ -60,9 +52,9 @@ def _heights(document: BuildingDocument) -> list[SceneProblem]:
     return [
         SceneProblem(
             _at("floors", high, "height"),
-            f"the floors {list_names([low, high])} are less than {2 * ON_FLOOR_M:g} m apart in "
+            f"the floors {list_names([low, high])} are less than {_APART_M:g} m apart in "
             "height: say how high each of them is",
         )
         for (low, below), (high, above) in pairwise(ordered)
-        if above.height - below.height < 2 * ON_FLOOR_M
+        if above.height - below.height < _APART_M
     ]

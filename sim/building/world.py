@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -14,9 +14,9 @@ from mend.maps.building.clearance import distances_m
 from mend.robots.base.body import RangeScan
 from mend.sim.building import laser
 from mend.sim.building.building_robot import PERIOD_S, BuildingRobot, FloorPose, Senses
+from mend.sim.building.bystander import RADIUS_M as PERSON_RADIUS_M
+from mend.sim.building.bystander import Bystander
 from mend.sim.building.door import WorldDoor
-from mend.sim.building.pedestrian import RADIUS_M as PERSON_RADIUS_M
-from mend.sim.building.pedestrian import Pedestrian
 from mend.tasks.frames import Frame
 from mend.tasks.intervention import Act, Intervention
 
@@ -24,21 +24,19 @@ Circle = tuple[float, float, float]
 
 _IN_FRONT_M = 0.6
 """So far from a robot's rim somebody stands who steps in its way."""
-_AT_DOOR_M = 2.5
-"""Who is asked to open a door opens one that is so near to a robot."""
+_AT_DOOR_M = 1.0
+"""Who is asked to open a door opens one that a robot stands so near to."""
 _HELD_OPEN_S = 30.0
 """What people opened for a robot falls shut after so long, once nobody is there."""
-_KEEPS_M = 0.15
-"""People stop so far before what stands there."""
 
 
 class WorldSnapshot(StrictModel):
-    """What a building is rebuilt from. Poses are floor, x, y, yaw."""
+    """What a building is rebuilt from. Poses are floor, x, y, and of robots yaw."""
 
     time_s: float
     robots: list[tuple[str, float, float, float]]
     doors: dict[str, tuple[bool, float | None]]
-    people: list[tuple[str, float, float, float, list[tuple[float, float]], bool]]
+    bystanders: list[tuple[str, float, float]]
 
 
 class BuildingWorld:
@@ -58,8 +56,7 @@ class BuildingWorld:
         self.building = building
         self.touches = 0
         self._time_s = 0.0
-        self._people: list[Pedestrian] = []
-        self._in_the_way: list[Pedestrian] = []
+        self.bystanders: list[Bystander] = []
         self._doors = {
             f"{floor}/{name}": WorldDoor(
                 f"{floor}/{name}",
@@ -69,11 +66,7 @@ class BuildingWorld:
             for floor, each in building.floors.items()
             for name, plan in each.doors.items()
         }
-        self._walls = {
-            name: np.array(each.walls, np.float64).reshape(-1, 4)
-            for name, each in building.floors.items()
-        }
-        self._scans: dict[int, RangeScan] = {}
+        self._scans: dict[BuildingRobot, RangeScan] = {}
         senses = Senses(self.time_s, self._height_m, self._scan, self.advance_cycle)
         self.robots = [BuildingRobot(*start, senses) for start in starts]
 
@@ -86,67 +79,49 @@ class BuildingWorld:
         self._time_s += PERIOD_S
         for door in self._doors.values():
             floor = door.name.split("/", 1)[0]
-            door.let_pass(self._time_s, [(x, y) for x, y, _ in self._round_things(floor)])
-        for person in self.people:
-            self._walk(person)
+            door.let_pass(self._time_s, [(x, y) for x, y, _ in self._circles(floor)])
         for robot in self.robots:
             self._drive(robot)
-
-    def _walk(self, person: Pedestrian) -> None:
-        wanted = person.next_pose(PERIOD_S)
-        others = self._circles(wanted.floor, person)
-        if not _is_near(wanted, others, PERSON_RADIUS_M + _KEEPS_M):
-            person.take(wanted)
 
     def _drive(self, robot: BuildingRobot) -> None:
         wanted = robot.next_pose()
         if wanted == robot.at:
             return
-        if self._touches(robot, wanted):
+        if self._touches(wanted, robot.radius_m, robot):
             self.touches += 1
             robot.bump()
         else:
             robot.at = wanted
 
-    def _touches(self, robot: BuildingRobot, at: FloorPose) -> bool:
-        if _is_near(at, self._circles(at.floor, robot), robot.radius_m):
+    def _touches(self, at: FloorPose, radius_m: float, but: BuildingRobot | None = None) -> bool:
+        """Whether something round would touch anything there."""
+        around = self._circles(at.floor, but)
+        if any(math.hypot(x - at.x, y - at.y) < radius + radius_m for x, y, radius in around):
             return True
         away_m = distances_m(np.array([[at.x, at.y]]), self._segments(at.floor))
-        return bool(away_m[0] < robot.radius_m)
+        return bool(away_m[0] < radius_m)
 
     # --- What there is ---
-
-    @property
-    def people(self) -> Sequence[Pedestrian]:
-        """All, those in the way of robots among them."""
-        return [*self._people, *self._in_the_way]
 
     @property
     def doors(self) -> Mapping[str, WorldDoor]:
         """By `FLOOR/DOOR`."""
         return self._doors
 
-    def let_in(self, person: Pedestrian) -> None:
-        """Somebody is there from now on."""
-        self._people.append(person)
-
     def _height_m(self, floor: str) -> float:
         return self.building.floors[floor].height
 
-    def _circles(self, floor: str, but: object) -> list[Circle]:
+    def _circles(self, floor: str, but: BuildingRobot | None = None) -> list[Circle]:
         """Robots and people on a floor."""
         there: list[tuple[object, FloorPose, float]] = [
             *((each, each.at, each.radius_m) for each in self.robots),
-            *((each, each.at, PERSON_RADIUS_M) for each in self.people),
+            *((each, each.at, PERSON_RADIUS_M) for each in self.bystanders),
         ]
         return [
             (at.x, at.y, radius)
             for each, at, radius in there
             if each is not but and at.floor == floor
         ]
-
-    def _round_things(self, floor: str) -> list[Circle]:
-        return self._circles(floor, None)
 
     def _segments(self, floor: str) -> NDArray[np.float64]:
         """Walls and shut doors."""
@@ -155,18 +130,20 @@ class BuildingWorld:
             for each in self._doors.values()
             if each.is_shut and each.name.startswith(f"{floor}/")
         ]
-        return np.vstack([self._walls[floor], np.array(shut, np.float64).reshape(-1, 4)])
+        return np.vstack(
+            [self.building.floors[floor].wall_segments, np.array(shut, np.float64).reshape(-1, 4)]
+        )
 
     def _scan(self, robot: BuildingRobot) -> RangeScan:
         """The newest, at the laser's period."""
-        kept = self._scans.get(id(robot))
+        kept = self._scans.get(robot)
         if kept is not None and self._time_s - kept.time < laser.PERIOD_S - 1e-9:
             return kept
         at = robot.at
         ranges = laser.ranges_m(
             self._segments(at.floor), self._circles(at.floor, robot), at.x, at.y, at.yaw
         )
-        scan = self._scans[id(robot)] = RangeScan(ranges, laser.ANGLES_RAD, self._time_s)
+        scan = self._scans[robot] = RangeScan(ranges, laser.ANGLES_RAD, self._time_s)
         return scan
 
     # --- People who act ---
@@ -189,12 +166,15 @@ class BuildingWorld:
         now = driving.velocity()
         heading = at.yaw + math.atan2(now.left_m_s, now.forward_m_s)
         x, y = at.x + ahead_m * math.cos(heading), at.y + ahead_m * math.sin(heading)
-        self._in_the_way.append(Pedestrian(FloorPose(at.floor, x, y)))
+        there = FloorPose(at.floor, x, y)
+        if self._touches(there, PERSON_RADIUS_M):
+            return "there is no room to stand in the robot's way"
+        self.bystanders.append(Bystander(there))
         return ""
 
     def _make_way(self) -> str:
-        stepped_aside = bool(self._in_the_way)
-        self._in_the_way.clear()
+        stepped_aside = bool(self.bystanders)
+        self.bystanders.clear()
         opened = self._open_for_who_waits()
         return "" if stepped_aside or opened else "nothing is in the way of any robot"
 
@@ -221,10 +201,7 @@ class BuildingWorld:
             time_s=self._time_s,
             robots=[(e.at.floor, e.at.x, e.at.y, e.at.yaw) for e in self.robots],
             doors={name: (each.is_shut, each.shuts_s) for name, each in self._doors.items()},
-            people=[
-                (e.at.floor, e.at.x, e.at.y, e.at.yaw, list(e.goals), e in self._in_the_way)
-                for e in self.people
-            ],
+            bystanders=[(e.at.floor, e.at.x, e.at.y) for e in self.bystanders],
         )
         return kept.model_dump(mode="json")
 
@@ -241,14 +218,7 @@ class BuildingWorld:
             robot.stand(FloorPose(*at))
         for name, (is_shut, shuts_s) in kept.doors.items():
             self._doors[name].is_shut, self._doors[name].shuts_s = is_shut, shuts_s
-        self._people, self._in_the_way = [], []
-        for floor, x, y, yaw, goals, in_the_way in kept.people:
-            person = Pedestrian(FloorPose(floor, x, y, yaw), tuple(goals))
-            (self._in_the_way if in_the_way else self._people).append(person)
+        self.bystanders = [Bystander(FloorPose(*each)) for each in kept.bystanders]
 
     def close(self) -> None:
         """Nothing is open."""
-
-
-def _is_near(at: FloorPose, circles: Iterable[Circle], radius_m: float) -> bool:
-    return any(math.hypot(x - at.x, y - at.y) < radius + radius_m for x, y, radius in circles)

@@ -43,7 +43,7 @@ def mend(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("world", ["tabletop", "workcell"])
+@pytest.mark.parametrize("world", ["building", "tabletop", "workcell"])
 def test_a_simulated_world_says_what_it_needs(tmp_path: Path, world: str) -> None:
     done = mend(tmp_path, "run", "eket", "--world", world)
     assert done.returncode == 2

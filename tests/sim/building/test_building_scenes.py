@@ -4,6 +4,7 @@ from typing import Any
 
 from building_bench import made_up
 
+from mend.maps.building.building import Building, FloorPlace, PlaceKind
 from mend.sim.building.buildings import BUILDINGS
 from mend.sim.building.scene import scene_name, scene_of
 from mend.tasks.definition import BehaviorNode
@@ -70,7 +71,7 @@ def test_names_of_places_become_names_of_scenes() -> None:
     assert scene_name("1/tea room") == "L1-tea_room"
 
 
-def test_a_place_on_a_floor_without_a_robot_is_told() -> None:
+def test_a_place_that_no_robot_gets_to_is_told() -> None:
     scene = scene_of(made_up(floors=2), "office", 1)
     places = sorted(each for each in scene.places if each[:4] in ("F1-1", "F2-2"))
     leaves = [
@@ -79,4 +80,16 @@ def test_a_place_on_a_floor_without_a_robot_is_told() -> None:
     ]
     problems = told(scene, *leaves)
     assert [where[1] for where, _ in problems] == [each for each in places if each[0:2] == "F2"]
-    assert problems[0][1].startswith("no robot begins on F2")
+    assert problems[0][1].startswith("no robot gets to 'F2-2")
+    assert problems[0][1].endswith("the way from F1 to F2 needs an elevator")
+
+
+def test_two_places_are_never_called_alike() -> None:
+    document = made_up().document
+    floor = document.floors["F1"]
+    x, y = floor.places["101"].x, floor.places["101"].y
+    more = {name: FloorPlace(x=x, y=y, kind=PlaceKind.ROOM) for name in ("tea room", "tea_room")}
+    changed_floor = floor.model_copy(update={"places": {**floor.places, **more}})
+    building = Building(document.model_copy(update={"floors": {"F1": changed_floor}}))
+    places = scene_of(building, "office", 1).places
+    assert {"F1-tea_room", "F1-tea_room_2"} <= places.keys()

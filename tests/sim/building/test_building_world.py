@@ -3,10 +3,13 @@
 import json
 import math
 
+import numpy as np
 import pytest
 from building_bench import BuildingBench, made_up
 
+from mend.maps.building.clearance import distances_m
 from mend.robots.link.messages import Finished, IssueDetected, Look, Looked, Rejected, Resume
+from mend.sim.building.bystander import RADIUS_M
 from mend.sim.building.scene import scene_of
 from mend.tasks.intervention import Act, Intervention
 
@@ -76,7 +79,7 @@ def test_another_floor_is_refused_in_a_sentence() -> None:
     bench = BuildingBench(scene_of(made_up(floors=2), "office", 1))
     bench.go("robot1", next(each for each in bench.scene.places if each.startswith("F2-2")))
     bench.run()
-    assert bench.of(Rejected)[-1].reason == "I am on F1, and that is on F2"
+    assert bench.of(Rejected)[-1].reason == "the way from F1 to F2 needs an elevator"
 
 
 def test_the_same_seed_is_the_same_building() -> None:
@@ -111,8 +114,27 @@ def test_people_do_what_can_be_done_in_a_building() -> None:
     for _ in range(30):
         bench.group.advance(0.05)
     assert bench.world.intervene(block) == ""
-    assert len(bench.world.people) == 1
+    assert len(bench.world.bystanders) == 1
     bench.run()
+    assert bench.of(Finished), "it goes round one who stands in a corridor"
     assert bench.world.touches == 0
-    steal = Intervention(act=Act.COVER)
-    assert "nothing in a building" in bench.world.intervene(steal)
+    cover = Intervention(act=Act.COVER)
+    assert "nothing in a building" in bench.world.intervene(cover)
+
+
+def test_nobody_stands_in_a_wall_or_in_a_robot() -> None:
+    bench = BuildingBench()
+    room = rooms(bench)[0]
+    bench.go("robot1", room)
+    answers = set()
+    while bench.group.advance(0.25):
+        answers.add(bench.world.intervene(Intervention(act=Act.BLOCK)))
+        for each in bench.world.bystanders:
+            away_m = distances_m(
+                np.array([[each.at.x, each.at.y]]),
+                bench.world.building.floors[each.at.floor].wall_segments,
+            )
+            assert away_m[0] >= RADIUS_M
+        bench.world.bystanders.clear()
+    assert "" in answers
+    assert bench.world.touches == 0
