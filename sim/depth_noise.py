@@ -6,6 +6,7 @@ Tracking" (3DIMPVT 2012), section 3: axial and lateral noise by distance and ang
 
 import math
 from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -58,6 +59,27 @@ class _Measurable:
     lost: tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]
 
 
+class _DrawnAhead:
+    """Normal deviates from a generator of their own, drawn by another thread until asked for."""
+
+    _thread = ThreadPoolExecutor(1, "depth-noise")
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        self._rng = rng
+        self._shape: tuple[int, ...] = ()
+        self._drawn: Future[NDArray[np.float32]] | None = None
+
+    def take(self, shape: tuple[int, ...]) -> NDArray[np.float32]:
+        """As many as the shape has. What was drawn for another shape is not used."""
+        ahead = None if self._drawn is None else self._drawn.result()
+        taken = ahead if ahead is not None and shape == self._shape else self._draw(shape)
+        self._shape, self._drawn = shape, self._thread.submit(self._draw, shape)
+        return taken
+
+    def _draw(self, shape: tuple[int, ...]) -> NDArray[np.float32]:
+        return self._rng.standard_normal(shape, dtype=np.float32)
+
+
 class DepthNoise:
     """The depth noise of one camera, by seed; `scale` 0 is none, 1 as published."""
 
@@ -66,6 +88,7 @@ class DepthNoise:
         self._rng = rng
         self._exposures = exposures
         self._known: _Measurable | None = None
+        self._surfaces, self._edges = (_DrawnAhead(each) for each in rng.spawn(2))
         if scale > 0.0:
             _warm_up()
 
@@ -79,10 +102,10 @@ class DepthNoise:
         known = self._known
         if known is None or known.depth_m is not depth_m or known.bgr is not bgr:
             known = self._known = self._measurable(depth_m, bgr, optics)
-        measured = self._rng.standard_normal(depth_m.shape, dtype=np.float32)
+        measured = self._surfaces.take(depth_m.shape)
         measured *= known.sigma_m
         measured += depth_m
-        noise = self._rng.standard_normal((len(known.rows), 3, self._exposures), dtype=np.float32)
+        noise = self._edges.take((len(known.rows), 3, self._exposures))
         _fuse_edges(depth_m, known.rows, known.columns, self._scale, noise, measured)
         rows, columns, chance = known.lost
         lost = self._rng.random(len(rows)) < chance

@@ -3,12 +3,11 @@
 import math
 from collections.abc import Set as AbstractSet
 from enum import StrEnum
-from itertools import permutations
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.spatial.distance import directed_hausdorff
+from scipy.spatial.distance import cdist
 
 from mend.robots.body import CameraImage
 from mend.robots.catalogue import Part
@@ -64,8 +63,9 @@ def off_place_m(seen: HeadSighting | SeenBox, part: Part, target: Location) -> f
     """
     if not seen.complete:
         return math.hypot(seen.x - target.x, seen.y - target.y)
-    corners = [Rectangle(at.x, at.y, at.yaw, part.size[:2]).corners() for at in (seen, target)]
-    return float(max(directed_hausdorff(*each)[0] for each in permutations(corners)))
+    corners = (Rectangle(at.x, at.y, at.yaw, part.size[:2]).corners() for at in (seen, target))
+    apart_m = cdist(*corners)
+    return float(max(apart_m.min(axis=0).max(), apart_m.min(axis=1).max()))
 
 
 def turned_rad(seen: HeadSighting | SeenBox, part: Part, target: Location) -> float:

@@ -186,5 +186,6 @@ class People:
             if has_come(self._context.clock, each.until)
         ]
         resets = [self._reset(leaf, f"{each.helper} has not done it in time") for leaf, each in due]
-        await self._context.commit(resets)
-        return bool(due)
+        if resets:
+            await self._context.commit(resets)
+        return bool(resets)
