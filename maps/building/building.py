@@ -98,12 +98,20 @@ class Floor(StrictModel):
         return VectorMap.of([*self.walls, *shut])
 
 
+class Caller(StrEnum):
+    """Who calls an elevator, and presses the buttons in it."""
+
+    ROBOTS = "robots"
+    PEOPLE = "people"
+
+
 class Elevator(StrictModel):
     """A cabin that stops at a place of each of its floors."""
 
     stops: Annotated[dict[Name, Name], Field(min_length=2)]
     ride_s: Seconds = RIDE_S
     floor_s: Seconds = FLOOR_S
+    called_by: Caller = Caller.PEOPLE
 
 
 class BuildingDocument(StrictModel):

@@ -17,6 +17,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict
 from mend.errors import WrongInputError
 from mend.maps.building.building import (
     BuildingDocument,
+    Caller,
     Door,
     DoorOpening,
     Elevator,
@@ -294,7 +295,7 @@ def _elevators(plan: _Plan, read: Mapping[str, _Read], notes: list[str]) -> dict
                 f"the lift '{lift}' has lanes on {len(stops)} of its levels: it is left out"
             )
         else:
-            elevators[_plain(lift)] = Elevator(stops=stops)
+            elevators[_plain(lift)] = Elevator(stops=stops, called_by=Caller.ROBOTS)
     return elevators
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from mend.maps.building.building import (
     BuildingDocument,
+    Caller,
     Door,
     DoorOpening,
     Elevator,
@@ -82,7 +83,8 @@ def random_building(seed: int, floors: int, rooms: int, name: str = "") -> Build
         },
         elevators={
             f"lift{index}": Elevator(
-                stops={f"F{number}": f"lift{index}" for number in range(1, floors + 1)}
+                stops={f"F{number}": f"lift{index}" for number in range(1, floors + 1)},
+                called_by=Caller.ROBOTS if (seed + index) % 2 else Caller.PEOPLE,
             )
             for index in range(1, len(elevators) + 1)
         },

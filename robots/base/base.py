@@ -5,7 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mend.maps.building.cabin import CABIN_M
 from mend.robots.base.body import BaseBody, BasePose
+from mend.robots.base.elevators import Elevators, NoElevators
 from mend.robots.base.motion.surroundings import Seen, Surroundings
 from mend.robots.base.motion.warming_up import warm_up
 from mend.robots.base.motion.way_follower import WayFollower
@@ -28,11 +30,12 @@ class Barrier:
 class Base(Effector[BaseBody]):
     """A base; it is at rest wherever it stands."""
 
-    def __init__(self, body: BaseBody, ways: Ways) -> None:
+    def __init__(self, body: BaseBody, ways: Ways, elevators: Elevators | None = None) -> None:
         """`ways` says which points to pass to a goal."""
         warm_up()
         super().__init__(body)
         self.ways = ways
+        self.elevators = elevators or NoElevators()
         self.at_rest = True
         self._speed = 1.0
         self._surroundings = Surroundings()
@@ -90,6 +93,10 @@ class Base(Effector[BaseBody]):
         share = 1.0 + _BEHIND_M / max(away_m, 1e-6)
         beyond = here.x + share * (met[0] - here.x), here.y + share * (met[1] - here.y)
         return Barrier(max(0.0, away_m - self.body.radius_m), self.ways.door_at(here, beyond))
+
+    def sees_out(self) -> bool:
+        """Whether it sees farther than the walls of a cabin in which it would be."""
+        return bool((self.body.scan().ranges_m > 2 * CABIN_M).any())
 
     def gets_to(self, to: BasePose) -> bool:
         """Whether what is seen leaves a way on to a pose. Raises `CommandError`."""

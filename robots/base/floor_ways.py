@@ -1,35 +1,54 @@
-"""Ways through a building: along its lanes, by what the robot's map of it says."""
+"""Ways through a building: along its lanes, and in its elevators, by what the robot's map says."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
-from mend.maps.building.building import Building
+from mend.maps.building.building import Building, Caller
+from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of, waiting_points
 from mend.maps.building.clearance import clearance_m
 from mend.maps.building.crossing import crossed_by
-from mend.maps.navigation import NavigationGraph, Place, WayKind
+from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 from mend.robots.base.body import BasePose
+from mend.robots.base.ways import Ride
 from mend.robots.execution.command_error import CommandError
 from mend.tasks.frames import Frame
 
 Point = tuple[float, float]
+
+_THROUGH_CABIN_S = 1e6
+"""No way leads through a cabin where there is any other."""
 
 
 class FloorWays:
     """`Ways` of one robot, whose base frame is `frame` in the building's; poses are in it.
 
     `speed_m_s`: as fast as the robot is where nothing says less; `needs_m`: so far from its middle
-    a wall has to be where it leaves the lanes. Doors are taken to be open: the robot will see.
+    a wall has to be where it leaves the lanes; `turn`: which of those who wait for an elevator it
+    is. Doors are taken to be open: the robot will see.
     """
 
-    def __init__(self, building: Building, frame: Frame, speed_m_s: float, needs_m: float) -> None:
+    def __init__(
+        self, building: Building, frame: Frame, speed_m_s: float, needs_m: float, turn: int = 0
+    ) -> None:
         self._building = building
         self._frame = frame
         self._speed_m_s = speed_m_s
         self._needs_m = needs_m
-        self._graphs = {floor: _lanes_of(building, floor) for floor in building.floors}
+        self._turn = turn
+        self._stops = _stops(building)
+        self._cabins = [
+            (floor, stop_of(building, elevator, floor))
+            for elevator, each in building.document.elevators.items()
+            for floor in each.stops
+        ]
+        self._all = _without_hours(building, self._stops, lambda _: True)
+        self._graphs = {
+            floor: _without_hours(building, self._stops, _is_on(floor)) for floor in building.floors
+        }
 
     def path(self, here: BasePose, to: BasePose) -> Sequence[Point]:
         """The points to pass, the last one the goal's.
@@ -47,39 +66,112 @@ class FloorWays:
             del points[-2]
         return [self._frame.to_robot(*each) for each in points[1:]]
 
+    def rides(self, here: BasePose, to: BasePose) -> Sequence[Ride]:
+        """The rides between two poses, in the order in which they are taken.
+
+        Raises `CommandError` where there is no way.
+        """
+        floor, goal_floor = self._floor(here), self._floor(to)
+        if floor == goal_floor:
+            return ()
+        start, goal = self._on_map(here), self._on_map(to)
+        path = _named_path(
+            self._all, self._nearest(floor, start), self._nearest(goal_floor, goal), self._speed_m_s
+        )
+        rides = []
+        for number, (a, b) in enumerate(pairwise(path)):
+            if a.floor != b.floor:
+                after = path[number + 2] if number + 2 < len(path) else None
+                rides.append(self._ride(a.name, b.name, after))
+        first = rides[0]
+        inside = math.dist(start, self._frame.to_scene(first.inside.x, first.inside.y))
+        return [replace(first, wait_at=None) if inside < CABIN_M else first, *rides[1:]]
+
+    def floor(self, pose: BasePose) -> str | None:
+        """What the floor of a pose is called; None between floors."""
+        return self._building.floor_at(pose.z)
+
     def door_at(self, here: BasePose, ahead: Point) -> str | None:
-        """The door between a pose and a point ahead."""
-        floor = self._building.floors[self._floor(here)]
+        """The door, or the elevator, between a pose and a point ahead."""
+        name = self._floor(here)
+        floor = self._building.floors[name]
         way = np.array([*self._on_map(here), *self._frame.to_scene(*ahead)])
-        for name, door in floor.doors.items():
+        for door_name, door in floor.doors.items():
             if len(crossed_by(way, np.array([[*door.posts[0], *door.posts[1]]]))):
-                return name
+                return door_name
+        for stop, elevator in self._stops.items():
+            if stop.startswith(f"{name}/") and len(
+                crossed_by(way, cabin_walls(stop_of(self._building, elevator, name)))
+            ):
+                return elevator
         return None
+
+    # --- Within -------------------------------------------------------------------------------
+
+    def _ride(self, begin: str, end: str, after: Place | None) -> Ride:
+        """From stop to stop; `after` is where the way leads on from there."""
+        from_floor, to_floor = begin.split("/", 1)[0], end.split("/", 1)[0]
+        elevator = self._stops[begin]
+        stop = stop_of(self._building, elevator, from_floor)
+        stop_there = stop_of(self._building, elevator, to_floor)
+        waits = waiting_points(self._building.floors[from_floor], stop, self._needs_m)
+        if not waits:
+            raise CommandError(f"there is no room to wait for {elevator} on {from_floor}")
+        out = self._outside(to_floor, stop_there) if after is None else (after.x_m, after.y_m)
+        wait = waits[self._turn % len(waits)]
+        return Ride(
+            elevator=elevator,
+            from_floor=from_floor,
+            to_floor=to_floor,
+            wait_at=self._pose(from_floor, wait, stop),
+            inside=self._pose(from_floor, stop, wait),
+            there=self._pose(to_floor, stop_there, out),
+            out_at=self._pose(to_floor, out, out),
+            called=self._building.document.elevators[elevator].called_by is Caller.ROBOTS,
+        )
+
+    def _outside(self, floor: str, stop: Point) -> Point:
+        waits = waiting_points(self._building.floors[floor], stop, self._needs_m)
+        if not waits:
+            raise CommandError(f"there is no room to get out on {floor}")
+        return waits[self._turn % len(waits)]
+
+    def _pose(self, floor: str, at: Point, facing: Point) -> BasePose:
+        x, y = self._frame.to_robot(*at)
+        to_x, to_y = self._frame.to_robot(*facing)
+        yaw = math.atan2(to_y - y, to_x - x)
+        return BasePose(x, y, yaw, self._building.floors[floor].height)
 
     def _along_lanes(self, floor: str, start: Point, goal: Point) -> list[Point]:
         """From the place that is nearest to the start to the one nearest to the goal."""
-        graph = self._graphs[floor]
         first, last = (self._nearest(floor, each) for each in (start, goal))
-        path = graph.quickest_path(first, last, self._speed_m_s)
-        if not path:
-            names = graph.places[first].name, graph.places[last].name
-            raise CommandError(f"no lane leads from {names[0]} to {names[1]}")
-        places = [graph.places[number] for number, _ in path]
+        places = _named_path(self._graphs[floor], first, last, self._speed_m_s)
+        through = [each.name for each in places[1:-1] if each.name in self._stops]
+        if through:
+            raise CommandError(f"no lane leads from {first} to {last} but through {through[0]}")
         return [(each.x_m, each.y_m) for each in places]
 
-    def _nearest(self, floor: str, point: Point) -> int:
+    def _nearest(self, floor: str, point: Point) -> str:
         """The nearest place that no wall is before. Raises `CommandError`."""
         places, walls = self._graphs[floor].places, self._building.floors[floor].wall_segments
-        for number in sorted(range(len(places)), key=lambda each: _away_m(places[each], point)):
-            way = np.array([*point, places[number].x_m, places[number].y_m])
+        for place in sorted(places, key=lambda each: _away_m(each, point)):
+            way = np.array([*point, place.x_m, place.y_m])
             if not len(crossed_by(way, walls)):
-                return number
+                return place.name
         raise CommandError(f"there are walls all round ({point[0]:.2f}, {point[1]:.2f}) on {floor}")
 
     def _is_wide(self, floor: str, a: Point, b: Point) -> bool:
         """Whether the straight way is wide enough to leave the lanes for."""
         walls = self._building.floors[floor].wall_segments
-        return clearance_m(a, b, walls) >= self._needs_m
+        if clearance_m(a, b, walls) < self._needs_m:
+            return False
+        around_m = CABIN_M + self._needs_m
+        return not any(
+            clearance_m(a, b, np.array([[*stop, *stop]])) < around_m
+            and min(math.dist(a, stop), math.dist(b, stop)) >= around_m
+            for name, stop in self._cabins
+            if name == floor
+        )
 
     def _floor(self, pose: BasePose) -> str:
         floor = self._building.floor_at(pose.z)
@@ -91,16 +183,40 @@ class FloorWays:
         return self._frame.to_scene(pose.x, pose.y)
 
 
-def _lanes_of(building: Building, floor: str) -> NavigationGraph:
-    """The places and lanes of one floor, as if no door were ever locked."""
-    prefix = f"{floor}/"
-    places = [each for each in building.graph.places if each.name.startswith(prefix)]
-    lanes = [
-        replace(each, open_s=(), closed=False)
-        for each in building.graph.ways
-        if each.kind is not WayKind.ELEVATOR and each.a.startswith(prefix)
-    ]
-    return NavigationGraph(places, lanes)
+def _stops(building: Building) -> dict[str, str]:
+    """The elevator that stops at each place that is a stop."""
+    return {
+        f"{floor}/{place}": name
+        for name, each in building.document.elevators.items()
+        for floor, place in each.stops.items()
+    }
+
+
+def _is_on(floor: str) -> Callable[[str], bool]:
+    return lambda name: name.startswith(f"{floor}/")
+
+
+def _without_hours(
+    building: Building, stops: dict[str, str], among: Callable[[str], bool]
+) -> NavigationGraph:
+    """The places among some and the ways between them, as if no door were ever locked."""
+
+    def plain(way: Way) -> Way:
+        through = way.kind is not WayKind.ELEVATOR and (way.a in stops or way.b in stops)
+        delay_s = way.delay_s + (_THROUGH_CABIN_S if through else 0.0)
+        return replace(way, open_s=(), closed=False, delay_s=delay_s)
+
+    graph = building.graph
+    ways = [plain(each) for each in graph.ways if among(each.a) and among(each.b)]
+    return NavigationGraph([each for each in graph.places if among(each.name)], ways)
+
+
+def _named_path(graph: NavigationGraph, first: str, last: str, speed_m_s: float) -> Sequence[Place]:
+    """The places on the quickest way. Raises `CommandError`."""
+    path = graph.quickest_path(graph.index(first), graph.index(last), speed_m_s)
+    if not path:
+        raise CommandError(f"no lane leads from {first} to {last}")
+    return [graph.places[number] for number, _ in path]
 
 
 def _away_m(place: Place, point: Point) -> float:

@@ -23,13 +23,9 @@ def look_as_told(
     """The routine of a `look` command. Raises `CommandError` for what no base can see."""
     if look.expect not in (None, "way_clear"):
         raise CommandError(f"a base that drives cannot look for '{look.expect}'")
-    goal = held.goal if isinstance(held, BaseExecution) else None
 
     def way_is_clear() -> bool:
-        try:
-            return goal is None or base.gets_to(goal)
-        except CommandError:
-            return False
+        return not isinstance(held, BaseExecution) or held.way_is_clear()
 
     def routine() -> Routine[Looked]:
         end_s = base.body.time_s() + look.within_s

@@ -4,9 +4,16 @@ import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from mend.robots.base.base import Base
-from mend.robots.base.behaviors.behavior import BaseBehavior, BaseSituation, Drive
+from mend.robots.base.behaviors.behavior import (
+    BaseBehavior,
+    BaseSituation,
+    BaseStep,
+    Drive,
+    RideUntilThere,
+)
 from mend.robots.base.behaviors.execution import BaseExecution
 from mend.robots.base.body import BaseBody, BasePose
+from mend.robots.base.elevators import Elevators
 from mend.robots.base.looks import answer, look_as_told
 from mend.robots.base.monitors.monitor import BaseView
 from mend.robots.base.ways import StraightWays, Ways
@@ -42,9 +49,10 @@ class BaseSubsystem:
         behaviors: Mapping[str, type[Behavior]],
         monitors: Mapping[str, type[AnyMonitor]],
         ways: Ways | None = None,
+        elevators: Elevators | None = None,
     ) -> None:
         """It takes those of bases. Without `ways` it goes straight to each goal."""
-        self.effector = Base(body, ways or StraightWays())
+        self.effector = Base(body, ways or StraightWays(), elevators)
         self._places = {name: _pose(each) for name, each in catalogue.places.items()}
         self._behaviors = of_kind(behaviors, BaseBehavior)  # type: ignore[type-abstract]
         self._monitors = for_view(monitors.values(), BaseView)
@@ -61,13 +69,14 @@ class BaseSubsystem:
             here=self.effector.body.pose(),
             places=self._places,
             target=self._target(getattr(parameters, "place", None), start.target),
+            ways=self.effector.ways,
         )
-        drives = behavior.drives(parameters, situation)
-        self._check_ways(situation.here, drives)
+        steps = behavior.steps(parameters, situation)
+        self._check_ways(situation.here, steps)
         return BaseExecution(
             start.execution,
             behavior.monitored_as,
-            drives,
+            steps,
             self.effector,
             [each.create({}) for each in self._monitors],
             report,
@@ -114,11 +123,15 @@ class BaseSubsystem:
     def note(self, looked: Looked) -> None:
         """What others located does not concern it."""
 
-    def _check_ways(self, here: BasePose, drives: Sequence[Drive]) -> None:
+    def _check_ways(self, here: BasePose, steps: Sequence[BaseStep]) -> None:
         """Raises `CommandError` where there is no way from one goal to the next."""
-        for drive in drives:
-            self.effector.ways.path(here, drive.to)
-            here = drive.to
+        for step in steps:
+            match step:
+                case Drive():
+                    self.effector.ways.path(here, step.to)
+                    here = step.to
+                case RideUntilThere():
+                    here = step.ride.there
 
     def _target(self, place: str | None, told: Location | None) -> BasePose | None:
         if told is not None:

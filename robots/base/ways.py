@@ -1,9 +1,29 @@
 """The ways that a base knows: which points to pass to a pose."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 from mend.robots.base.body import BasePose
+
+
+@dataclass(frozen=True, slots=True)
+class Ride:
+    """A ride in an elevator from floor to floor; poses in the base's frame on the link.
+
+    One waits at `wait_at`, None for who is in the cabin already, gets in to `inside`, is `there`
+    once it has arrived, and gets out to `out_at`. `called`: whether the robot itself can call it;
+    people must otherwise.
+    """
+
+    elevator: str
+    from_floor: str
+    to_floor: str
+    wait_at: BasePose | None
+    inside: BasePose
+    there: BasePose
+    out_at: BasePose
+    called: bool
 
 
 class Ways(Protocol):
@@ -14,6 +34,17 @@ class Ways(Protocol):
 
         Raises `CommandError` where there is no way.
         """
+        ...
+
+    def rides(self, here: BasePose, to: BasePose) -> Sequence[Ride]:
+        """The rides to take from one pose to another; none where both are on one floor.
+
+        Raises `CommandError` where there is no way.
+        """
+        ...
+
+    def floor(self, pose: BasePose) -> str | None:
+        """What the floor of a pose is called; None where there is none."""
         ...
 
     def door_at(self, here: BasePose, ahead: tuple[float, float]) -> str | None:
@@ -27,6 +58,14 @@ class StraightWays:
     def path(self, here: BasePose, to: BasePose) -> Sequence[tuple[float, float]]:  # noqa: ARG002
         """Nothing but the goal."""
         return [(to.x, to.y)]
+
+    def rides(self, here: BasePose, to: BasePose) -> Sequence[Ride]:  # noqa: ARG002
+        """None: it knows one floor."""
+        return ()
+
+    def floor(self, pose: BasePose) -> str | None:  # noqa: ARG002
+        """It has no name."""
+        return None
 
     def door_at(self, here: BasePose, ahead: tuple[float, float]) -> str | None:  # noqa: ARG002
         """None: it knows of no doors."""

@@ -10,6 +10,8 @@ class Phase(StrEnum):
     """Before the first step: looking and planning."""
     TRAVEL = "travel"
     """The base drives."""
+    RIDE = "ride"
+    """The base waits for an elevator, or in it."""
     APPROACH = "approach"
     GRASP = "grasp"
     LIFT = "lift"

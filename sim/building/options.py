@@ -14,3 +14,6 @@ class BuildingOptions(StrictModel):
 
     shut_doors: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.2
     """The share of the doors that people open that is shut at first, drawn by the seed."""
+
+    wrong_floors: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
+    """How often somebody who presses a robot's button in an elevator presses another one."""

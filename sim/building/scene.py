@@ -7,8 +7,13 @@ from itertools import chain, count
 
 from mend.errors import WrongInputError
 from mend.maps.building.building import Building, FloorPlace, PlaceKind
+from mend.maps.building.cabin import waiting_points
+from mend.sim.building.building_robot import RADIUS_M
 from mend.tasks.scene import Base, Place, Pose, Scene
 
+SPARE_M = 0.05
+"""A robot is so much farther from walls than its rim at least."""
+NEEDS_M = RADIUS_M + SPARE_M
 APART_M = 1.0
 """Robots begin so far from each other."""
 _ODD = re.compile(r"[^A-Za-z0-9_-]")
@@ -21,8 +26,8 @@ def scene_of(building: Building, name: str, robots: int) -> Scene:
     """A scene with all places that are not on the way only, and so many robots.
 
     A place is called after its floor and itself, as `F1-101`, and where two would be called alike
-    the second has a number. Raises `WrongInputError` where there
-    is no room for all robots.
+    the second has a number. That of an elevator is where one waits for it. Raises
+    `WrongInputError` where there is no room for all robots.
     """
     named = [
         full
@@ -32,7 +37,8 @@ def scene_of(building: Building, name: str, robots: int) -> Scene:
     ]
     places: dict[str, Place] = {}
     for full in named:
-        places[_unlike(scene_name(full), places)] = Place(pose=_pose(building, full))
+        if (pose := _where_to_stand(building, full)) is not None:
+            places[_unlike(scene_name(full), places)] = Place(pose=pose)
     begins = _begins(building, robots)
     return Scene(
         name=name,
@@ -82,6 +88,15 @@ def _by_turns(places: list[str]) -> list[str]:
 
 def _far(a: Base, b: Base) -> bool:
     return a.z != b.z or math.hypot(a.x - b.x, a.y - b.y) >= APART_M
+
+
+def _where_to_stand(building: Building, full: str) -> Pose | None:
+    """A place, or where one waits for the elevator that stops there; None without room for it."""
+    pose, (floor, name) = _pose(building, full), full.split("/", 1)
+    if not any(each.stops.get(floor) == name for each in building.document.elevators.values()):
+        return pose
+    waits = waiting_points(building.floors[floor], (pose.x, pose.y), NEEDS_M)
+    return Pose(x=waits[0][0], y=waits[0][1], z=pose.z) if waits else None
 
 
 def _pose(building: Building, full: str) -> Pose:

@@ -16,7 +16,10 @@ from mend.sim.building import laser
 from mend.sim.building.building_robot import PERIOD_S, BuildingRobot, FloorPose, Senses
 from mend.sim.building.bystander import RADIUS_M as PERSON_RADIUS_M
 from mend.sim.building.bystander import Bystander
+from mend.sim.building.cabin import Cabin, Call
 from mend.sim.building.door import WorldDoor
+from mend.sim.building.elevator_bank import CabinSnapshot, ElevatorBank
+from mend.sim.building.options import BuildingOptions
 from mend.tasks.frames import Frame
 from mend.tasks.intervention import Act, Intervention
 
@@ -37,6 +40,7 @@ class WorldSnapshot(StrictModel):
     robots: list[tuple[str, float, float, float]]
     doors: dict[str, tuple[bool, float | None]]
     bystanders: list[tuple[str, float, float]]
+    cabins: dict[str, CabinSnapshot]
 
 
 class BuildingWorld:
@@ -49,11 +53,13 @@ class BuildingWorld:
         self,
         building: Building,
         starts: Iterable[tuple[Frame, FloorPose]],
-        shut_doors: float,
+        options: BuildingOptions,
         rng: np.random.Generator,
     ) -> None:
-        """`shut_doors`: the share of those that people open that is shut at first."""
         self.building = building
+        self.elevators = ElevatorBank(building)
+        self.wrong_floors = options.wrong_floors
+        self._rng = rng
         self.touches = 0
         self._time_s = 0.0
         self.bystanders: list[Bystander] = []
@@ -61,7 +67,7 @@ class BuildingWorld:
             f"{floor}/{name}": WorldDoor(
                 f"{floor}/{name}",
                 plan,
-                plan.opens is DoorOpening.ITSELF or bool(rng.random() < shut_doors),
+                plan.opens is DoorOpening.ITSELF or bool(rng.random() < options.shut_doors),
             )
             for floor, each in building.floors.items()
             for name, plan in each.doors.items()
@@ -82,6 +88,7 @@ class BuildingWorld:
             door.let_pass(self._time_s, [(x, y) for x, y, _ in self._circles(floor)])
         for robot in self.robots:
             self._drive(robot)
+        self.elevators.pass_time(self._time_s, self.robots, self._circles)
 
     def _drive(self, robot: BuildingRobot) -> None:
         wanted = robot.next_pose()
@@ -109,7 +116,7 @@ class BuildingWorld:
         return self._doors
 
     def _height_m(self, floor: str) -> float:
-        return self.building.floors[floor].height
+        return self.elevators.height_m(floor, self._time_s)
 
     def _circles(self, floor: str, but: BuildingRobot | None = None) -> list[Circle]:
         """Robots and people on a floor."""
@@ -124,14 +131,21 @@ class BuildingWorld:
         ]
 
     def _segments(self, floor: str) -> NDArray[np.float64]:
-        """Walls and shut doors."""
+        """Walls, shut doors and cabins."""
+        cabins = self.elevators.walls(floor)
+        if floor not in self.building.floors:
+            return cabins
         shut = [
             each.segment
             for each in self._doors.values()
             if each.is_shut and each.name.startswith(f"{floor}/")
         ]
         return np.vstack(
-            [self.building.floors[floor].wall_segments, np.array(shut, np.float64).reshape(-1, 4)]
+            [
+                self.building.floors[floor].wall_segments,
+                np.array(shut, np.float64).reshape(-1, 4),
+                cabins,
+            ]
         )
 
     def _scan(self, robot: BuildingRobot) -> RangeScan:
@@ -167,7 +181,8 @@ class BuildingWorld:
         heading = at.yaw + math.atan2(now.left_m_s, now.forward_m_s)
         x, y = at.x + ahead_m * math.cos(heading), at.y + ahead_m * math.sin(heading)
         there = FloorPose(at.floor, x, y)
-        if self._touches(there, PERSON_RADIUS_M):
+        in_cabin = self.elevators.is_in_a_cabin(at.floor, x, y, PERSON_RADIUS_M)
+        if in_cabin or self._touches(there, PERSON_RADIUS_M):
             return "there is no room to stand in the robot's way"
         self.bystanders.append(Bystander(there))
         return ""
@@ -176,7 +191,27 @@ class BuildingWorld:
         stepped_aside = bool(self.bystanders)
         self.bystanders.clear()
         opened = self._open_for_who_waits()
-        return "" if stepped_aside or opened else "nothing is in the way of any robot"
+        pressed = self._press_for_who_waits()
+        done = stepped_aside or opened or pressed
+        return "" if done else "nothing is in the way of any robot"
+
+    def _press_for_who_waits(self) -> bool:
+        """Somebody calls the elevator that a robot needs, and presses a button in it."""
+        pressed = False
+        for number, robot in enumerate(self.robots):
+            for cabin in self.elevators.waits(number, robot):
+                call = cabin.call_of(number)
+                assert call is not None, "it waits"
+                call.to = self._pressed(call, cabin)
+                pressed = True
+        return pressed
+
+    def _pressed(self, call: Call, cabin: Cabin) -> str:
+        """The button for where it wants to go, or now and then another one."""
+        others = [each for each in cabin.plan.stops if each not in (call.wants, cabin.floor)]
+        if others and self._rng.random() < self.wrong_floors:
+            return others[int(self._rng.integers(len(others)))]
+        return call.wants
 
     def _open_for_who_waits(self) -> bool:
         opened = False
@@ -202,6 +237,7 @@ class BuildingWorld:
             robots=[(e.at.floor, e.at.x, e.at.y, e.at.yaw) for e in self.robots],
             doors={name: (each.is_shut, each.shuts_s) for name, each in self._doors.items()},
             bystanders=[(e.at.floor, e.at.x, e.at.y) for e in self.bystanders],
+            cabins=self.elevators.snapshot(),
         )
         return kept.model_dump(mode="json")
 
@@ -212,6 +248,7 @@ class BuildingWorld:
             raise ValueError(f"expected {len(self.robots)} robots, got {len(kept.robots)}")
         if kept.doors.keys() != self._doors.keys():
             raise ValueError("the snapshot has other doors than the building")
+        self.elevators.restore(kept.cabins)
         self._time_s = kept.time_s
         self._scans.clear()
         for robot, at in zip(self.robots, kept.robots, strict=True):

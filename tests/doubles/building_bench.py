@@ -31,6 +31,7 @@ class BuildingBench:
         *,
         robots: int = 1,
         shut_doors: float = 0.0,
+        wrong_floors: float = 0.0,
         seed: int = 1,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
@@ -39,7 +40,7 @@ class BuildingBench:
             scene=self.scene,
             seed=seed,
             speed=None,
-            options={"shut_doors": shut_doors},
+            options={"shut_doors": shut_doors, "wrong_floors": wrong_floors},
         )
         self.group: SharedWorld = BUILDINGS.create_agents(setup)
         self.world: BuildingWorld = self.group.world  # type: ignore[assignment]
@@ -56,7 +57,7 @@ class BuildingBench:
         agent = next(each for each in self.group.agents if each.name == robot)
         agent.handle(f"c{self._sent}", body)
 
-    def go(self, robot: str, place: str) -> None:
+    def go(self, robot: str, place: str, behavior: str = "go_to") -> None:
         pose = self.scene.places[place].pose
         x, y = frames_of(self.scene)[robot].to_robot(pose.x, pose.y)
         self.send(
@@ -64,7 +65,7 @@ class BuildingBench:
             Start(
                 execution=f"e{self._sent + 1}",
                 node="/0",
-                behavior="go_to",
+                behavior=behavior,
                 parameters={"place": place},
                 target=Location(x=x, y=y, z=pose.z, yaw=pose.yaw),
             ),

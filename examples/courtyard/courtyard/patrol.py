@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from mend.documents.strict_model import StrictModel
-from mend.robots.base.behaviors import BaseBehavior, BaseSituation, Drive
+from mend.robots.base.behaviors import BaseBehavior, BaseSituation, BaseStep, Drive
 from mend.robots.execution.command_error import CommandError
 from mend.tasks.scene import Name
 
@@ -24,7 +24,7 @@ class Patrol(BaseBehavior):
     name: ClassVar[str] = "patrol"
     parameters: ClassVar[type[StrictModel]] = PatrolParameters
 
-    def drives(self, parameters: StrictModel, situation: BaseSituation) -> Sequence[Drive]:
+    def steps(self, parameters: StrictModel, situation: BaseSituation) -> Sequence[BaseStep]:
         assert isinstance(parameters, PatrolParameters), "commands are checked before"
         unknown = [each for each in parameters.stops if each not in situation.places]
         if unknown:

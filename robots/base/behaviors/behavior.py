@@ -3,9 +3,11 @@
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.body import BasePose
+from mend.robots.base.ways import Ride, Ways
 from mend.robots.execution.behavior import Behavior
 from mend.robots.execution.phase import Phase
 
@@ -26,8 +28,27 @@ class Drive:
 
 
 @dataclass(frozen=True, slots=True)
+class GetIn:
+    """One step: wait before an elevator until it is open for this robot, and get in."""
+
+    name: str
+    ride: Ride
+
+
+@dataclass(frozen=True, slots=True)
+class RideUntilThere:
+    """One step: stay in an elevator until it is open at the floor where the ride ends."""
+
+    name: str
+    ride: Ride
+
+
+BaseStep: TypeAlias = Drive | GetIn | RideUntilThere
+
+
+@dataclass(frozen=True, slots=True)
 class BaseSituation:
-    """What a behavior may know when it lays out its drives.
+    """What a behavior may know when it lays out its steps.
 
     `here` is where the base is; `places` are the poses of all that the task's scene names so, and
     `target` is that of the behavior's `place`, None where it has none.
@@ -36,11 +57,21 @@ class BaseSituation:
     here: BasePose
     places: Mapping[str, BasePose]
     target: BasePose | None
+    ways: Ways
 
 
 class BaseBehavior(Behavior):
-    """What a base does, as a list of drives; a `place` among its parameters is its target."""
+    """What a base does, as a list of steps; a `place` among its parameters is its target."""
 
     @abstractmethod
-    def drives(self, parameters: StrictModel, situation: BaseSituation) -> Sequence[Drive]:
-        """Lay out all drives. Raises `CommandError` where the parameters name what is not there."""
+    def steps(self, parameters: StrictModel, situation: BaseSituation) -> Sequence[BaseStep]:
+        """Lay out all steps. Raises `CommandError` where the parameters name what is not there."""
+
+
+def steps_of_ride(ride: Ride) -> list[BaseStep]:
+    """Go to the elevator, get in, and stay in it until it is there."""
+    name = ride.elevator
+    steps: list[BaseStep] = []
+    if ride.wait_at is not None:
+        steps += [Drive(f"go to {name}", ride.wait_at), GetIn(f"get into {name}", ride)]
+    return [*steps, RideUntilThere(f"ride to {ride.to_floor}", ride)]

@@ -1,13 +1,13 @@
-"""The execution of one behavior of a base: its drives, with waits where something bars the way."""
+"""The execution of one behavior of a base: its steps, one after the other."""
 
 from collections.abc import Callable, Sequence
 
 from mend.robots.base.base import Base
-from mend.robots.base.behaviors.behavior import Drive
+from mend.robots.base.behaviors.behavior import BaseStep, Drive, GetIn, RideUntilThere
+from mend.robots.base.behaviors.driving import NEAR_M, Driving
 from mend.robots.base.behaviors.progress import BaseProgress
+from mend.robots.base.behaviors.riding import Riding
 from mend.robots.base.behaviors.watch import BaseWatch
-from mend.robots.base.body import BasePose
-from mend.robots.base.motion.headway import Headway
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import Execution
 from mend.robots.execution.execution_state import ExecutionState
@@ -15,35 +15,43 @@ from mend.robots.execution.monitor import BEFORE_FIRST_STEP, AnyMonitor
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import ReportBody, Resumed, StepStarted
 
-NEAR_M = 0.05
-TURNED_RAD = 0.09
-"""A base is where it was to go when it is so near and turned no farther."""
-
 
 class BaseExecution(Execution[BaseProgress]):
-    """Drives one behavior of a base. What was driven before a hold is not driven again."""
+    """Walks one behavior of a base. What was done before a hold is not done again."""
 
     def __init__(
         self,
         id: str,  # noqa: A002 - the protocol's word
         behavior: str,
-        drives: Sequence[Drive],
+        steps: Sequence[BaseStep],
         base: Base,
         monitors: Sequence[AnyMonitor],
         report: Callable[[ReportBody], None],
     ) -> None:
         """`behavior`: the name by which monitors know it."""
-        progress = BaseProgress(drives=drives)
+        progress = BaseProgress(steps=steps)
         super().__init__(id, progress, base, report)
         self._base = base
         self._watch = BaseWatch(id, behavior, progress, base, monitors, report)
-        self._driven = 0
+        self._driving = Driving(base, progress, self._watch)
+        self._riding = Riding(base, self._driving, progress, self._watch)
+        self._done = 0
 
-    @property
-    def goal(self) -> BasePose | None:
-        """Where the step under way, or else the next, leads; None if there is none."""
-        left = self._progress.drives[self._driven :]
-        return left[0].to if left else None
+    def way_is_clear(self) -> bool:
+        """Whether the step under way, or else the next, could be taken, as far as is seen."""
+        left = self._progress.steps[self._done :]
+        try:
+            match left[0] if left else None:
+                case Drive() as drive:
+                    return self._base.gets_to(drive.to)
+                case GetIn() as step:
+                    is_open = self._base.elevators.is_open_for(step.ride)
+                    return is_open and self._base.gets_to(step.ride.inside)
+                case RideUntilThere() as step:
+                    return self._riding.is_over(step.ride)
+        except CommandError:
+            return False
+        return True
 
     @property
     def fraction(self) -> float:
@@ -52,69 +60,47 @@ class BaseExecution(Execution[BaseProgress]):
             return 1.0
         return min(max(0.0, 1.0 - following.left_m / following.length_m), 1.0)
 
+    def end(self) -> None:
+        self._base.elevators.withdraw()
+        super().end()
+
     def _walk(self, *, resumed: bool) -> Routine[bool]:
         progress = self._progress
-        progress.step, progress.waits_since_s = BEFORE_FIRST_STEP, None
+        progress.step, progress.blocked_since_s, progress.wait = BEFORE_FIRST_STEP, None, None
         self._watch.check()
-        if self._driven == 0 and all(self._is_at(each.to) for each in progress.drives):
+        if self._done == 0 and self._is_there():
             return True
         progress.move_to(ExecutionState.RUNNING)
-        for number in range(self._driven + 1, len(progress.drives) + 1):
+        for number in range(self._done + 1, len(progress.steps) + 1):
             progress.step = number
             if resumed:
                 self._report(Resumed(execution=self.id, step=number))
                 resumed = False
-            yield from self._take(progress.drives[number - 1])
-            self._driven = number
+            yield from self._take(progress.steps[number - 1])
+            self._done = number
         progress.move_to(ExecutionState.CONFIRMING)
         self._watch.check()
         return False
 
-    def _take(self, drive: Drive) -> Routine[None]:
-        """One drive, with waits wherever its way is barred. Raises `Interruption`."""
-        self._report(StepStarted(execution=self.id, step=self.step, name=drive.name))
-        self._begin(drive)
-        self._watch.check()
-        headway = Headway(self._base.body.limits.turn_rad_s)
-        while not (self._is_at(drive.to) and self._base.slow):
-            if self._base.following is not None:
-                self._drive_on(drive, headway)
-            self._watch.check_if_due()
-            yield
-        self._base.stop()
-        yield from self._watched(self._base.settle())
-        yield from self._watched(self._base.wait(drive.wait_s))
+    def _is_there(self) -> bool:
+        """Whether it is where all of its steps lead."""
+        return all(
+            isinstance(each, Drive) and self._driving.is_at(each.to)
+            for each in self._progress.steps
+        )
 
-    def _begin(self, drive: Drive) -> None:
-        progress = self._progress
-        progress.waits_since_s, progress.stalled_s, progress.no_way = None, 0.0, None
-        try:
-            self._base.start(drive.to, drive.speed)
-        except CommandError as error:
-            progress.no_way = str(error)
-
-    def _drive_on(self, drive: Drive, headway: Headway) -> None:
-        """Drive while there is a way; stand still before what leaves none."""
-        progress, base = self._progress, self._base
-        base.drive_on()
-        following = base.following
-        assert following is not None, "it drives"
-        if not following.barred:
-            turn_rad = base.body.pose().turned_by_rad(drive.to) if following.turns_at_end else None
-            headway.note(following.left_m, turn_rad, base.pace * base.body.control_period_s)
-            progress.waits_since_s, progress.stalled_s = None, headway.stalled_s
-        elif progress.waits_since_s is None and base.slow:
-            progress.waits_since_s = base.body.time_s()
-
-    def _watched(self, routine: Routine[None]) -> Routine[None]:
-        for _ in routine:
-            self._watch.check_if_due()
-            yield
-
-    def _is_at(self, goal: BasePose) -> bool:
-        here = self._base.body.pose()
-        return here.distance_m(goal) <= NEAR_M and here.turned_by_rad(goal) <= TURNED_RAD
+    def _take(self, step: BaseStep) -> Routine[None]:
+        """One step. Raises `Interruption`."""
+        self._report(StepStarted(execution=self.id, step=self.step, name=step.name))
+        match step:
+            case Drive():
+                yield from self._driving.take(step)
+            case GetIn():
+                yield from self._riding.get_in(step)
+            case RideUntilThere():
+                yield from self._riding.ride(step)
 
     def _go_to_rest(self) -> Routine[None]:
         """A base rests where it stands."""
+        self._base.elevators.withdraw()
         yield from self._base.settle()

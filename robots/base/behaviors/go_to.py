@@ -1,10 +1,16 @@
-"""`go_to`: drive to a place."""
+"""`go_to`: drive to a place, and ride to its floor."""
 
 from collections.abc import Sequence
 from typing import ClassVar
 
 from mend.documents.strict_model import StrictModel
-from mend.robots.base.behaviors.behavior import BaseBehavior, BaseSituation, Drive
+from mend.robots.base.behaviors.behavior import (
+    BaseBehavior,
+    BaseSituation,
+    BaseStep,
+    Drive,
+    steps_of_ride,
+)
 from mend.robots.execution.command_error import CommandError
 from mend.tasks.scene import Name
 
@@ -16,14 +22,18 @@ class GoToParameters(StrictModel):
 
 
 class GoTo(BaseBehavior):
-    """Drives to a place, round what stands in the way; waits where there is no way round."""
+    """Drives to a place, round what stands in the way; waits where there is no way round.
+
+    Where the place is on another floor it takes elevators.
+    """
 
     name: ClassVar[str] = "go_to"
     parameters: ClassVar[type[StrictModel]] = GoToParameters
-    step_count: ClassVar[int | None] = 1
 
-    def drives(self, parameters: StrictModel, situation: BaseSituation) -> Sequence[Drive]:
+    def steps(self, parameters: StrictModel, situation: BaseSituation) -> Sequence[BaseStep]:
         assert isinstance(parameters, GoToParameters), "commands are checked before"
         if situation.target is None:
             raise CommandError("go_to needs a place to go to")
-        return [Drive(f"go to {parameters.place}", situation.target)]
+        rides = situation.ways.rides(situation.here, situation.target)
+        steps = [step for ride in rides for step in steps_of_ride(ride)]
+        return [*steps, Drive(f"go to {parameters.place}", situation.target)]

@@ -3,34 +3,54 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mend.robots.base.behaviors.behavior import Drive
+from mend.robots.base.behaviors.behavior import BaseStep, Drive
+from mend.robots.base.ways import Ride
 from mend.robots.execution.execution_state import ExecutionState
 from mend.robots.execution.monitor import BEFORE_FIRST_STEP
 from mend.robots.execution.phase import Phase
 from mend.robots.execution.progress import Progress
 
 
-@dataclass(slots=True, kw_only=True)
-class BaseProgress(Progress):
-    """What drives the steps and what watches them both go by.
+@dataclass(slots=True)
+class Wait:
+    """Waiting for a ride to begin, or `aboard` for its end, since `since_s` of the world's clock.
 
-    `waits_since_s`: since when it has stood before something; None while it drives. `stalled_s`:
-    how long it has come no nearer, although it may move. `no_way`: why it knows no way.
+    `was_shut`: whether the cabin was seen shut meanwhile.
     """
 
-    drives: Sequence[Drive] = ()
-    waits_since_s: float | None = None
+    ride: Ride
+    aboard: bool
+    since_s: float
+    was_shut: bool = False
+
+
+@dataclass(slots=True, kw_only=True)
+class BaseProgress(Progress):
+    """What walks the steps and what watches them both go by.
+
+    `blocked_since_s`: since when it has stood before something; None while it drives. `stalled_s`:
+    how long it has come no nearer, although it may move. `no_way`: why it knows no way. `wait`: for
+    what elevator it waits.
+    """
+
+    steps: Sequence[BaseStep] = ()
+    blocked_since_s: float | None = None
     stalled_s: float = 0.0
     no_way: str | None = None
+    wait: Wait | None = None
 
     @property
-    def drive(self) -> Drive | None:
+    def taken(self) -> BaseStep | None:
         """The step under way; None before the first."""
-        return None if self.step == BEFORE_FIRST_STEP else self.drives[self.step - 1]
+        return None if self.step == BEFORE_FIRST_STEP else self.steps[self.step - 1]
 
     @property
     def phase(self) -> Phase:
         """What the step under way is for."""
         if self.state is ExecutionState.CONFIRMING:
             return Phase.CONFIRM
-        return Phase.PREPARE if self.drive is None else self.drive.phase
+        if self.taken is None:
+            return Phase.PREPARE
+        if self.wait is not None:
+            return Phase.RIDE
+        return self.taken.phase if isinstance(self.taken, Drive) else Phase.TRAVEL

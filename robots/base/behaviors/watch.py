@@ -4,8 +4,9 @@ import math
 from collections.abc import Callable, Sequence
 
 from mend.robots.base.base import Base
+from mend.robots.base.behaviors.behavior import Drive
 from mend.robots.base.behaviors.progress import BaseProgress
-from mend.robots.base.monitors.monitor import BaseView
+from mend.robots.base.monitors.monitor import AwaitedElevator, BaseView
 from mend.robots.execution.monitor import AnyMonitor
 from mend.robots.execution.watch import Watch
 from mend.robots.link.messages import ReportBody
@@ -38,7 +39,7 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
     def check(self) -> None:
         """Let the monitors of this step judge. Raises `Interruption` for the first that must."""
         progress, now = self._progress, self._base.body.time_s()
-        drive, since_s = progress.drive, progress.waits_since_s
+        taken, since_s = progress.taken, progress.blocked_since_s
         barrier = self._base.barrier()
         self.show(
             BaseView(
@@ -46,12 +47,27 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
                 step=progress.step,
                 phase=progress.phase,
                 pose=self._base.body.pose(),
-                goal=None if drive is None else drive.to,
+                goal=taken.to if isinstance(taken, Drive) else None,
                 in_the_way_m=None if barrier is None else barrier.away_m,
                 door=None if barrier is None else barrier.door,
                 waited_s=0.0 if since_s is None else now - since_s,
                 stalled_s=progress.stalled_s,
                 no_way=progress.no_way,
+                elevator=self._elevator(now),
                 scan=self._base.body.scan(),
             )
+        )
+
+    def _elevator(self, now_s: float) -> AwaitedElevator | None:
+        wait, base = self._progress.wait, self._base
+        if wait is None:
+            return None
+        is_open = base.sees_out() if wait.aboard else base.elevators.is_open_for(wait.ride)
+        return AwaitedElevator(
+            ride=wait.ride,
+            aboard=wait.aboard,
+            is_open=is_open,
+            was_shut=wait.was_shut,
+            floor=base.ways.floor(base.body.pose()),
+            waited_s=now_s - wait.since_s,
         )

@@ -5,9 +5,26 @@ from typing import ClassVar, TypeVar
 
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.body import BasePose, RangeScan
+from mend.robots.base.ways import Ride
 from mend.robots.execution.monitor import Monitor, MonitorView
 
 P = TypeVar("P", bound=StrictModel)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AwaitedElevator:
+    """An elevator that a base waits for, or in which it waits (`aboard`), for `waited_s` so far.
+
+    `is_open` for it; `was_shut`: it has been seen shut since. `floor`: where the base is, None
+    between floors.
+    """
+
+    ride: Ride
+    aboard: bool
+    is_open: bool
+    was_shut: bool
+    floor: str | None
+    waited_s: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,7 +35,7 @@ class BaseView(MonitorView):
     `in_the_way_m` is how far what leaves it no way on is from its rim, None where it gets on or
     round, and `door` what its map calls that, if it is a door; `waited_s` how long it has stood
     before it. `stalled_s`: how long it has come no nearer, although nothing bars its way. `no_way`:
-    why it knows no way to the goal.
+    why it knows no way to the goal. `elevator`: what it waits for, if that is one.
     """
 
     pose: BasePose
@@ -28,6 +45,7 @@ class BaseView(MonitorView):
     waited_s: float
     stalled_s: float
     no_way: str | None
+    elevator: AwaitedElevator | None
     scan: RangeScan
 
 

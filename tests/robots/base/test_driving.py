@@ -13,10 +13,11 @@ from robot_bench import MODEL
 from scripted_body import STARTS, ScriptedBody, catalogue
 
 from mend.robots.arm.subsystem import ArmSubsystem
-from mend.robots.base.behaviors.execution import NEAR_M, TURNED_RAD
+from mend.robots.base.behaviors.driving import NEAR_M, TURNED_RAD
 from mend.robots.base.body import BasePose
 from mend.robots.base.monitors import BaseView
 from mend.robots.base.subsystem import BaseSubsystem
+from mend.robots.base.ways import StraightWays
 from mend.robots.catalogue import Catalogue
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.monitor import for_view
@@ -230,7 +231,7 @@ def test_an_interrupt_makes_it_brake_and_a_retreat_ends_it_where_it_stands() -> 
     assert "is not held" in bench.of(Rejected)[-1].reason
 
 
-class Gates:
+class Gates(StraightWays):
     """Ways through a gate that may be closed."""
 
     closed = False

@@ -4,7 +4,7 @@ from typing import Any
 
 from building_bench import made_up
 
-from mend.maps.building.building import Building, FloorPlace, PlaceKind
+from mend.maps.building.building import Building, FloorPlace, Lane, PlaceKind
 from mend.sim.building.buildings import BUILDINGS
 from mend.sim.building.scene import scene_name, scene_of
 from mend.tasks.definition import BehaviorNode
@@ -73,15 +73,48 @@ def test_names_of_places_become_names_of_scenes() -> None:
 
 def test_a_place_that_no_robot_gets_to_is_told() -> None:
     scene = scene_of(made_up(floors=2), "office", 1)
-    places = sorted(each for each in scene.places if each[:4] in ("F1-1", "F2-2"))
+    outside = Place(pose=Pose(x=-20.0, y=-20.0, z=0.0))
+    scene = scene.model_copy(update={"places": {**scene.places, "street": outside}})
     leaves = [
         BehaviorNode(parent=None, name=each, behavior="go_to", parameters={"place": each})
-        for each in places
+        for each in ("F1-101", "F2-201", "street")
     ]
-    problems = told(scene, *leaves)
-    assert [where[1] for where, _ in problems] == [each for each in places if each[0:2] == "F2"]
-    assert problems[0][1].startswith("no robot gets to 'F2-2")
-    assert problems[0][1].endswith("the way from F1 to F2 needs an elevator")
+    ((where, message),) = told(scene, *leaves)
+    assert where == ("places", "street")
+    assert message == "no robot gets to 'street': there are walls all round (-20.00, -20.00) on F1"
+
+
+def test_what_is_in_the_cabin_of_an_elevator_is_told() -> None:
+    scene = scene_of(made_up(floors=2), "office", 1)
+    stop = made_up(floors=2).floors["F1"].places["lift1"]
+    inside = Place(pose=Pose(x=stop.x, y=stop.y, z=0.0))
+    told_of = told(scene.model_copy(update={"places": {"inside": inside}}))
+    assert told_of == [
+        (("places", "inside", "pose"), "this is in the cabin of the elevator 'lift1'")
+    ]
+
+
+def test_a_lane_through_a_cabin_that_does_not_end_there_is_told() -> None:
+    document = made_up(floors=2).document
+    floor = document.floors["F1"]
+    stop = floor.places["lift1"]
+    ends = {
+        "west": FloorPlace(x=stop.x - 1.2, y=stop.y),
+        "east": FloorPlace(x=stop.x + 1.2, y=stop.y),
+    }
+    lanes = (
+        *floor.lanes,
+        Lane(between=("west", "east")),
+        Lane(between=("lift1", "west")),
+    )
+    changed_floor = floor.model_copy(update={"places": {**floor.places, **ends}, "lanes": lanes})
+    floors = {**document.floors, "F1": changed_floor}
+    building = Building(document.model_copy(update={"floors": floors}))
+    messages = [message for _, message in told(scene_of(building, "office", 1))]
+    assert messages == [
+        "the lane between 'west' and 'east' comes within 0.90 m of 'lift1', where the cabin of "
+        "'lift1' stops"
+    ]
 
 
 def test_two_places_are_never_called_alike() -> None:

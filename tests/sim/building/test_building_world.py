@@ -8,7 +8,7 @@ import pytest
 from building_bench import BuildingBench, made_up
 
 from mend.maps.building.clearance import distances_m
-from mend.robots.link.messages import Finished, IssueDetected, Look, Looked, Rejected, Resume
+from mend.robots.link.messages import Finished, IssueDetected, Look, Looked, Resume
 from mend.sim.building.bystander import RADIUS_M
 from mend.sim.building.scene import scene_of
 from mend.tasks.intervention import Act, Intervention
@@ -73,13 +73,6 @@ def test_robots_on_one_floor_pass_each_other_without_touching() -> None:
         bench.run()
     assert bench.world.touches == 0
     assert len(bench.of(Finished)) == 9
-
-
-def test_another_floor_is_refused_in_a_sentence() -> None:
-    bench = BuildingBench(scene_of(made_up(floors=2), "office", 1))
-    bench.go("robot1", next(each for each in bench.scene.places if each.startswith("F2-2")))
-    bench.run()
-    assert bench.of(Rejected)[-1].reason == "the way from F1 to F2 needs an elevator"
 
 
 def test_the_same_seed_is_the_same_building() -> None:

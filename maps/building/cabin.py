@@ -1,0 +1,67 @@
+"""The room that an elevator's cabin takes at its stops, and where one waits for it."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mend.maps.building.building import Building, Floor
+from mend.maps.building.clearance import clearance_m, distances_m
+
+Matrix = NDArray[np.float64]
+Point = tuple[float, float]
+
+CABIN_M = 0.6
+"""So far is a cabin's wall from its middle, its stop, on all eight sides."""
+_SIDES = 8
+_CORNERS = np.array(
+    [(math.cos(turn), math.sin(turn)) for turn in (np.arange(_SIDES) + 0.5) * math.tau / _SIDES]
+) * (CABIN_M / math.cos(math.pi / _SIDES))
+_WAITS_M = (1.2, 1.6, 2.0, 2.5, 3.0)
+"""Who waits stands so far from the stop, the first that there is room for."""
+_DIRECTIONS = 24
+_BESIDE_LANES_M = 0.55
+_APART_M = 0.7
+
+
+def cabin_walls(stop: Point) -> Matrix:
+    """The walls of a cabin that is shut at a stop, as rows (8, 4)."""
+    corners = _CORNERS + stop
+    return np.hstack([corners, np.roll(corners, -1, axis=0)])
+
+
+def waiting_points(floor: Floor, stop: Point, needs_m: float) -> Sequence[Point]:
+    """Where robots may wait that see the cabin, best first; who needs `needs_m` fits there.
+
+    They are beside the lanes where there is room, so that whoever gets out gets past, and far
+    enough from each other. Empty where there is no room at all.
+    """
+    lanes = np.array([_ends(floor, each.between) for each in floor.lanes]).reshape(-1, 4)
+    candidates = [
+        (stop[0] + away_m * math.cos(turn), stop[1] + away_m * math.sin(turn))
+        for away_m in _WAITS_M
+        for turn in np.arange(_DIRECTIONS) * math.tau / _DIRECTIONS
+    ]
+    free = [each for each in candidates if clearance_m(each, stop, floor.wall_segments) >= needs_m]
+    if not free:
+        return ()
+    beside = distances_m(np.array(free), lanes) >= _BESIDE_LANES_M
+    ranked = [each for each, so in zip(free, beside, strict=True) if so]
+    ranked += [each for each, so in zip(free, beside, strict=True) if not so]
+    chosen: list[Point] = []
+    for each in ranked:
+        if all(math.dist(each, other) >= _APART_M for other in chosen):
+            chosen.append(each)
+    return chosen
+
+
+def stop_of(building: Building, elevator: str, floor: str) -> Point:
+    """Where the middle of a cabin is at a floor."""
+    place = building.floors[floor].places[building.document.elevators[elevator].stops[floor]]
+    return place.x, place.y
+
+
+def _ends(floor: Floor, between: tuple[str, str]) -> tuple[float, float, float, float]:
+    a, b = (floor.places[each] for each in between)
+    return a.x, a.y, b.x, b.y

@@ -1,0 +1,57 @@
+"""Riding elevators: waiting for one, getting in, and staying in it until it is there."""
+
+from collections.abc import Callable
+
+from mend.maps.building.cabin import CABIN_M
+from mend.robots.base.base import Base
+from mend.robots.base.behaviors.behavior import Drive, GetIn, RideUntilThere
+from mend.robots.base.behaviors.driving import Driving
+from mend.robots.base.behaviors.progress import BaseProgress, Wait
+from mend.robots.base.behaviors.watch import BaseWatch
+from mend.robots.base.ways import Ride
+from mend.robots.execution.routine import Routine
+
+
+class Riding:
+    """Takes the steps of rides, and lets the monitors watch."""
+
+    def __init__(
+        self, base: Base, driving: Driving, progress: BaseProgress, watch: BaseWatch
+    ) -> None:
+        self._base, self._driving = base, driving
+        self._progress, self._watch = progress, watch
+
+    def get_in(self, step: GetIn) -> Routine[None]:
+        """Wait until the cabin is open for this robot, and drive in. Raises `Interruption`.
+
+        If it shuts before the robot is in, the robot waits again.
+        """
+        ride, elevators = step.ride, self._base.elevators
+        while not self._is_in(ride):
+            yield from self._await(ride, aboard=False, until=lambda: elevators.is_open_for(ride))
+            yield from self._driving.take(
+                Drive(step.name, ride.inside), lambda: not elevators.is_open_for(ride)
+            )
+
+    def ride(self, step: RideUntilThere) -> Routine[None]:
+        """Stay until the cabin is open at the floor where the ride ends. Raises `Interruption`."""
+        yield from self._await(step.ride, aboard=True, until=lambda: self.is_over(step.ride))
+
+    def is_over(self, ride: Ride) -> bool:
+        """Whether the cabin is open at the floor where a ride ends."""
+        base = self._base
+        return base.sees_out() and base.ways.floor(base.body.pose()) == ride.to_floor
+
+    def _is_in(self, ride: Ride) -> bool:
+        """Whether the whole robot is in the cabin."""
+        here = self._base.body.pose()
+        return here.distance_m(ride.inside) < CABIN_M - self._base.body.radius_m
+
+    def _await(self, ride: Ride, *, aboard: bool, until: Callable[[], bool]) -> Routine[None]:
+        wait = self._progress.wait = Wait(ride, aboard, self._base.body.time_s())
+        while not until():
+            wait.was_shut |= aboard and not self._base.sees_out()
+            self._base.elevators.ask(ride)
+            self._watch.check_if_due()
+            yield
+        self._progress.wait = None

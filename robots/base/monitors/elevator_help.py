@@ -1,0 +1,50 @@
+"""`elevator_help`: a base needs somebody for an elevator that it cannot call, or that is stuck."""
+
+from typing import Annotated, ClassVar
+
+from pydantic import Field
+
+from mend.documents.strict_model import StrictModel
+from mend.robots.base.monitors.monitor import AwaitedElevator, BaseMonitor, BaseView
+from mend.robots.execution.monitor import ANY_BEHAVIOR, Reaction
+from mend.robots.execution.phase import Phase
+from mend.robots.link.messages import LASER, Detection
+
+
+class ElevatorPatience(StrictModel):
+    """It asks people to call an elevator after `asks_s`, and doubts one that does not come.
+
+    That is after `doubts_s`.
+    """
+
+    asks_s: Annotated[float, Field(gt=0.0, le=600.0)] = 2.0
+    doubts_s: Annotated[float, Field(gt=0.0, le=3600.0)] = 240.0
+
+
+class ElevatorHelp(BaseMonitor[ElevatorPatience]):
+    """Raises `elevator_help` while the base waits for an elevator, or in it."""
+
+    issue: ClassVar[str] = "elevator_help"
+    behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
+    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.RIDE})
+    reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
+    parameters: ClassVar[type[StrictModel]] = ElevatorPatience
+
+    def check(self, view: BaseView) -> Detection | None:
+        awaited = view.elevator
+        if awaited is None:
+            return None
+        why = self._why(awaited)
+        return None if why is None else Detection(camera=LASER, explanation=why)
+
+    def _why(self, awaited: AwaitedElevator) -> str | None:
+        ride, waited_s = awaited.ride, awaited.waited_s
+        if not ride.called and waited_s >= self.settings.asks_s:
+            if not awaited.aboard and not awaited.is_open:
+                return f"I need {ride.elevator} to get from {ride.from_floor} to {ride.to_floor}"
+            if awaited.aboard and awaited.is_open and not awaited.was_shut:
+                return f"I am in {ride.elevator}, and need to get to {ride.to_floor}"
+        if waited_s >= self.settings.doubts_s and not awaited.is_open:
+            does = "opened" if awaited.aboard else "come"
+            return f"{ride.elevator} has not {does} for {waited_s:.0f} s"
+        return None

@@ -1,0 +1,153 @@
+"""The cabin of an elevator: it comes to whoever's turn it is, and takes along who is in it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from mend.maps.building.building import Caller, Elevator
+from mend.tasks.transitions import Transitions
+
+DOOR_S = 2.0
+"""Its door takes so long to open, and to shut."""
+HELD_S = 60.0
+"""So long it stands open for who does not get in."""
+
+
+class CabinState(StrEnum):
+    """What a cabin does: it stands shut or open at a floor, or is on its way to another."""
+
+    SHUT = "shut"
+    OPEN = "open"
+    MOVING = "moving"
+
+
+_CHANGES = Transitions(
+    "a cabin",
+    {
+        CabinState.SHUT: {CabinState.OPEN, CabinState.MOVING},
+        CabinState.OPEN: {CabinState.SHUT},
+        CabinState.MOVING: {CabinState.OPEN},
+    },
+)
+
+
+@dataclass(slots=True)
+class Call:
+    """A robot by its number wants from floor to floor.
+
+    `to`: the floor whose button was pressed, None until somebody has pressed one.
+    """
+
+    robot: int
+    begin: str
+    wants: str
+    to: str | None
+
+
+@dataclass(slots=True)
+class Cabin:
+    """`order`: all floors, the lowest first; `floor`: where it is, or was before it left.
+
+    `since_s`: when it opened, or left; `until_s`: when its door has moved, or it arrives. `calls`
+    in the order in which they came.
+    """
+
+    name: str
+    plan: Elevator
+    order: Sequence[str]
+    floor: str
+    state: CabinState = CabinState.SHUT
+    until_s: float = 0.0
+    since_s: float = 0.0
+    heading_for: str | None = None
+    calls: list[Call] = field(default_factory=list)
+
+    def call(self, robot: int, begin: str, wants: str) -> None:
+        """A robot wants a ride; it says so as often as it likes."""
+        known = self.call_of(robot)
+        if known is not None and known.wants == wants:
+            return
+        self.withdraw(robot)
+        to = wants if self.plan.called_by is Caller.ROBOTS else None
+        self.calls.append(Call(robot, begin, wants, to))
+
+    def call_of(self, robot: int) -> Call | None:
+        """What a robot wants of it."""
+        return next((each for each in self.calls if each.robot == robot), None)
+
+    def withdraw(self, robot: int) -> None:
+        """A robot wants nothing of it any more."""
+        self.calls = [each for each in self.calls if each.robot != robot]
+
+    def is_open_at(self, floor: str) -> bool:
+        """Whether one can get in and out there."""
+        return self.state is CabinState.OPEN and self.floor == floor
+
+    def share_of_way(self, time_s: float) -> float:
+        """How much of its way to the next floor it has behind it."""
+        if self.state is not CabinState.MOVING:
+            return 0.0
+        return min(1.0, (time_s - self.since_s) / max(self.until_s - self.since_s, 1e-9))
+
+    def serving(self, inside: Sequence[int]) -> Call | None:
+        """Whose turn it is: of who is in it, or else the first that was called for."""
+        if inside:
+            return next((each for each in self.calls if each.robot in inside and each.to), None)
+        return next((each for each in self.calls if each.to), None)
+
+    def pass_time(self, time_s: float, inside: Sequence[int], *, door_is_free: bool) -> bool:
+        """One cycle; `inside` are the robots that stand in it. True when it has arrived."""
+        if time_s < self.until_s:
+            return False
+        if self.state is CabinState.MOVING:
+            assert self.heading_for is not None, "it moves to a floor"
+            self.floor, self.heading_for = self.heading_for, None
+            self.calls = [e for e in self.calls if e.robot not in inside or e.to != self.floor]
+            self._open(time_s)
+            return True
+        served = self.serving(inside)
+        if self.state is CabinState.OPEN:
+            self._hold_open(served, time_s, inside, door_is_free=door_is_free)
+        elif served is not None:
+            self._go(self._next_floor(served, inside), time_s)
+        return False
+
+    # --- Within -------------------------------------------------------------------------------
+
+    def _hold_open(
+        self, served: Call | None, time_s: float, inside: Sequence[int], *, door_is_free: bool
+    ) -> None:
+        """Shut once there is a reason to, and nobody stands in the door."""
+        if served is None:
+            # Whoever is inside wants nothing yet, or is to get out.
+            if inside or not door_is_free:
+                return
+        elif served.robot in inside:
+            if served.to == self.floor:
+                self.withdraw(served.robot)
+                return
+        elif served.begin == self.floor:
+            if time_s - self.since_s < HELD_S:
+                return
+            self.withdraw(served.robot)
+        if door_is_free:
+            self.state = _CHANGES.require(self.state, CabinState.SHUT)
+            self.until_s = time_s + DOOR_S
+
+    def _next_floor(self, served: Call, inside: Sequence[int]) -> str:
+        assert served.to is not None, "it was pressed"
+        return served.to if served.robot in inside else served.begin
+
+    def _go(self, floor: str, time_s: float) -> None:
+        if floor == self.floor:
+            self._open(time_s)
+            return
+        floors = abs(self.order.index(floor) - self.order.index(self.floor))
+        self.state = _CHANGES.require(self.state, CabinState.MOVING)
+        self.heading_for, self.since_s = floor, time_s
+        self.until_s = time_s + floors * self.plan.floor_s
+
+    def _open(self, time_s: float) -> None:
+        self.state = _CHANGES.require(self.state, CabinState.OPEN)
+        self.since_s = time_s
+        self.until_s = time_s + DOOR_S

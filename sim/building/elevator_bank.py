@@ -1,0 +1,187 @@
+"""The elevators of a building: where their cabins are, and who is in them."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mend.documents.strict_model import StrictModel
+from mend.maps.building.building import Building
+from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of
+from mend.robots.base.ways import Ride
+from mend.sim.building.building_robot import BuildingRobot, FloorPose
+from mend.sim.building.cabin import Cabin, CabinState, Call
+
+Circle = tuple[float, float, float]
+Matrix = NDArray[np.float64]
+
+
+class CabinSnapshot(StrictModel):
+    """What a cabin is rebuilt from; calls are robot, from, wanted, pressed."""
+
+    floor: str
+    state: CabinState
+    since_s: float
+    until_s: float
+    heading_for: str | None
+    calls: list[tuple[int, str, str, str | None]]
+
+
+class ElevatorBank:
+    """All elevators. Who is in a cabin that is shut is on no floor, but in its `room`."""
+
+    def __init__(self, building: Building) -> None:
+        order = list(building.floors)
+        self._building = building
+        self.cabins: Mapping[str, Cabin] = {
+            name: Cabin(name, plan, order, min(plan.stops, key=order.index))
+            for name, plan in building.document.elevators.items()
+        }
+        self._stops = {
+            name: {floor: stop_of(building, name, floor) for floor in each.plan.stops}
+            for name, each in self.cabins.items()
+        }
+
+    # --- Where things are ---------------------------------------------------------------------
+
+    @staticmethod
+    def room(elevator: str) -> str:
+        """What stands for the floor of who is in a cabin that is shut: no floor has a slash."""
+        return f"/{elevator}"
+
+    def height_m(self, floor: str, time_s: float) -> float:
+        """The height of a floor, or of the cabin that it stands for."""
+        if not floor.startswith("/"):
+            return self._building.floors[floor].height
+        cabin, floors = self.cabins[floor[1:]], self._building.floors
+        begin_m = floors[cabin.floor].height
+        if cabin.heading_for is None:
+            return begin_m
+        end_m = floors[cabin.heading_for].height
+        return begin_m + cabin.share_of_way(time_s) * (end_m - begin_m)
+
+    def walls(self, floor: str) -> Matrix:
+        """The walls of cabins on a floor (n, 4); an open one has none."""
+        rows = [
+            cabin_walls(stops[cabin.floor if floor == self.room(name) else floor])
+            for name, cabin in self.cabins.items()
+            if (stops := self._stops[name])
+            and (floor == self.room(name) or (floor in stops and not cabin.is_open_at(floor)))
+        ]
+        return np.vstack([np.empty((0, 4)), *rows])
+
+    def is_in_a_cabin(self, floor: str, x: float, y: float, radius_m: float) -> bool:
+        """Whether something round there would be in the room of any cabin."""
+        return any(
+            floor in stops and math.dist(stops[floor], (x, y)) < CABIN_M + radius_m
+            for stops in self._stops.values()
+        )
+
+    # --- Time ---------------------------------------------------------------------------------
+
+    def pass_time(
+        self,
+        time_s: float,
+        robots: Sequence[BuildingRobot],
+        circles: Callable[[str], Sequence[Circle]],
+    ) -> None:
+        """One cycle: cabins move, with whoever is in them."""
+        for cabin in self.cabins.values():
+            inside = [n for n, each in enumerate(robots) if self._is_inside(cabin, each)]
+            before, riders = cabin.floor, [robots[each] for each in inside]
+            free = self._is_door_free(cabin, riders, circles)
+            cabin.pass_time(time_s, inside, door_is_free=free)
+            for robot in riders:
+                robot.at = self._taken_along(cabin, robot.at, before)
+
+    def _taken_along(self, cabin: Cabin, at: FloorPose, before: str) -> FloorPose:
+        """Where somebody in a cabin is now; `before` is the floor at which it was."""
+        floor = cabin.floor if cabin.state is CabinState.OPEN else self.room(cabin.name)
+        stops = self._stops[cabin.name]
+        (x0, y0), (x1, y1) = stops[before], stops[cabin.floor]
+        return replace(at, floor=floor, x=at.x + x1 - x0, y=at.y + y1 - y0)
+
+    def _is_inside(self, cabin: Cabin, robot: BuildingRobot) -> bool:
+        """Whether all of a robot is in a cabin."""
+        if robot.at.floor == self.room(cabin.name):
+            return True
+        away_m = math.dist(self._stops[cabin.name][cabin.floor], (robot.at.x, robot.at.y))
+        return cabin.is_open_at(robot.at.floor) and away_m < CABIN_M - robot.radius_m
+
+    def _is_door_free(
+        self,
+        cabin: Cabin,
+        riders: Sequence[BuildingRobot],
+        circles: Callable[[str], Sequence[Circle]],
+    ) -> bool:
+        """Whether nobody is in the room of a cabin but robots that stand in it."""
+        x, y = self._stops[cabin.name][cabin.floor]
+        within = sum(
+            math.dist((x, y), each[:2]) < CABIN_M + each[2] for each in circles(cabin.floor)
+        )
+        return within <= len(riders) and not any(each.moving for each in riders)
+
+    # --- Who wants what -----------------------------------------------------------------------
+
+    def of_robot(self, number: int) -> "RobotElevators":
+        """The elevators as one robot has them."""
+        return RobotElevators(self.cabins, number)
+
+    def waits(self, number: int, robot: BuildingRobot) -> list[Cabin]:
+        """The elevators for which a robot waits until people press a button."""
+        return [
+            each
+            for each in self.cabins.values()
+            if (call := each.call_of(number)) is not None
+            and call.to is None
+            and (robot.at.floor == call.begin or self._is_inside(each, robot))
+        ]
+
+    # --- What it is rebuilt from ----------------------------------------------------------------
+
+    def snapshot(self) -> dict[str, CabinSnapshot]:
+        """Where all cabins are, and who wants what."""
+        return {
+            name: CabinSnapshot(
+                floor=each.floor,
+                state=each.state,
+                since_s=each.since_s,
+                until_s=each.until_s,
+                heading_for=each.heading_for,
+                calls=[(call.robot, call.begin, call.wants, call.to) for call in each.calls],
+            )
+            for name, each in self.cabins.items()
+        }
+
+    def restore(self, kept: Mapping[str, CabinSnapshot]) -> None:
+        """Raises `ValueError` for other elevators than the building has."""
+        if kept.keys() != self.cabins.keys():
+            raise ValueError("the snapshot has other elevators than the building")
+        for name, each in kept.items():
+            cabin = self.cabins[name]
+            cabin.floor, cabin.state, cabin.heading_for = each.floor, each.state, each.heading_for
+            cabin.since_s, cabin.until_s = each.since_s, each.until_s
+            cabin.calls = [Call(*call) for call in each.calls]
+
+
+class RobotElevators:
+    """Implements `mend.robots.base.elevators.Elevators` for one robot, by its number."""
+
+    def __init__(self, cabins: Mapping[str, Cabin], number: int) -> None:
+        self._cabins = cabins
+        self._number = number
+
+    def ask(self, ride: Ride) -> None:
+        self._cabins[ride.elevator].call(self._number, ride.from_floor, ride.to_floor)
+
+    def withdraw(self) -> None:
+        for each in self._cabins.values():
+            each.withdraw(self._number)
+
+    def is_open_for(self, ride: Ride) -> bool:
+        cabin = self._cabins[ride.elevator]
+        call = cabin.call_of(self._number)
+        served = cabin.serving(())
+        return call is not None and served is call and cabin.is_open_at(ride.from_floor)

@@ -1,0 +1,53 @@
+"""Whoever waits for an elevator sees its cabin, stands free of walls, and lets others out."""
+
+import math
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from mend.maps.building.building import Building, Floor, FloorPlace, Lane
+from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of, waiting_points
+from mend.maps.building.clearance import clearance_m, distances_m
+from mend.maps.building.random_building import random_building
+
+NEEDS_M = 0.3
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_who_waits_has_room_sees_the_cabin_and_is_outside_it(seed: int) -> None:
+    building = Building(random_building(seed, 3, 5 + seed * 5))
+    for elevator, each in building.document.elevators.items():
+        for name in each.stops:
+            floor, stop = building.floors[name], stop_of(building, elevator, name)
+            points = waiting_points(floor, stop, NEEDS_M)
+            assert points
+            for point in points:
+                assert clearance_m(point, stop, floor.wall_segments) >= NEEDS_M
+                assert math.dist(point, stop) > CABIN_M + NEEDS_M
+            assert all(math.dist(a, b) >= 2 * NEEDS_M for a, b in combinations(points, 2))
+
+
+def test_who_waits_stands_beside_the_lane_where_there_is_room() -> None:
+    floor = Floor(
+        places={"stop": FloorPlace(x=0.0, y=0.0), "hall": FloorPlace(x=6.0, y=0.0)},
+        lanes=(Lane(between=("stop", "hall")),),
+        walls=((-2.0, -2.0, 7.0, -2.0), (-2.0, 2.0, 7.0, 2.0)),
+    )
+    best = waiting_points(floor, (0.0, 0.0), NEEDS_M)[0]
+    lane = np.array([[0.0, 0.0, 6.0, 0.0]])
+    assert distances_m(np.array([best]), lane)[0] > 0.5
+
+
+def test_nobody_waits_where_walls_are_all_round() -> None:
+    walls = cabin_walls((0.0, 0.0))
+    floor = Floor(
+        places={"stop": FloorPlace(x=0.0, y=0.0)}, walls=tuple(map(tuple, walls.tolist()))
+    )
+    assert waiting_points(floor, (0.0, 0.0), NEEDS_M) == ()
+
+
+def test_the_walls_of_a_cabin_are_round_its_stop() -> None:
+    walls = cabin_walls((3.0, -1.0))
+    assert distances_m(np.array([[3.0, -1.0]]), walls)[0] == pytest.approx(CABIN_M)
+    assert np.allclose(walls[:, 2:], np.roll(walls[:, :2], -1, axis=0))

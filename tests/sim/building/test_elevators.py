@@ -1,0 +1,167 @@
+"""Robots ride elevators, ask people where they cannot call them, and notice the wrong floor."""
+
+import json
+
+import pytest
+from building_bench import BuildingBench, made_up
+
+from mend.maps.building.building import Building, BuildingDocument, Caller
+from mend.robots.link.messages import (
+    Finished,
+    Interrupt,
+    IssueDetected,
+    Look,
+    Looked,
+    Resume,
+    StepStarted,
+)
+from mend.sim.building.buildings import BUILDINGS
+from mend.sim.building.cabin import CabinState
+from mend.sim.building.scene import scene_of
+from mend.sim.world import WorldSetup
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scene import Scene
+
+PRESS = Intervention(act=Act.RELEASE)
+
+
+def called_by(caller: Caller, floors: int = 2, seed: int = 3) -> Building:
+    document = made_up(floors=floors, seed=seed).document.model_dump(mode="json")
+    for each in document["elevators"].values():
+        each["called_by"] = caller
+    return Building(BuildingDocument.model_validate_json(json.dumps(document)))
+
+
+def office(caller: Caller, floors: int = 2, robots: int = 1, seed: int = 3) -> Scene:
+    return scene_of(called_by(caller, floors, seed), "office", robots)
+
+
+def see_through(bench: BuildingBench, within_s: float = 60.0) -> bool:
+    """Somebody does what was asked, and the robot looks whether that is so."""
+    assert bench.world.intervene(PRESS) == ""
+    bench.send("robot1", Look(expect="way_clear", within_s=within_s))
+    bench.run()
+    return bool(bench.of(Looked)[-1].fulfilled)
+
+
+def test_a_robot_rides_to_a_room_of_another_floor() -> None:
+    bench = BuildingBench(office(Caller.ROBOTS))
+    bench.go("robot1", "F2-201")
+    bench.run()
+    assert bench.of(Finished)
+    assert bench.world.robots[0].at.floor == "F2"
+    assert bench.world.touches == 0
+    names = [each.name for each in bench.of(StepStarted)]
+    assert names == ["go to lift1", "get into lift1", "ride to F2", "go to F2-201"]
+
+
+def test_ride_elevator_ends_before_the_elevator_on_the_other_floor() -> None:
+    bench = BuildingBench(office(Caller.ROBOTS))
+    bench.go("robot1", "F2-201", "ride_elevator")
+    bench.run()
+    at, elevators = bench.world.robots[0].at, bench.world.elevators
+    assert at.floor == "F2"
+    assert not elevators.is_in_a_cabin("F2", at.x, at.y, 0.25)
+    bench.go("robot1", "F2-203", "ride_elevator")
+    bench.run()
+    assert bench.of(Finished)[-1].found_in_place
+
+
+def test_an_elevator_that_people_call_is_asked_for() -> None:
+    bench = BuildingBench(office(Caller.PEOPLE))
+    bench.go("robot1", "F2-201")
+    issue = bench.run_until(IssueDetected)
+    assert issue.issue == "elevator_help"
+    assert issue.detection is not None
+    assert issue.detection.explanation == "I need lift1 to get from F1 to F2"
+    bench.run()
+    assert see_through(bench)
+    bench.send("robot1", Resume(execution=issue.execution))
+    bench.run()
+    assert bench.of(Finished)
+    assert bench.world.robots[0].at.floor == "F2"
+
+
+def test_nobody_is_thanked_for_an_elevator_that_does_not_come() -> None:
+    bench = BuildingBench(office(Caller.PEOPLE))
+    bench.go("robot1", "F2-201")
+    bench.run_until(IssueDetected)
+    bench.run()
+    bench.send("robot1", Look(expect="way_clear", within_s=30.0))
+    bench.run()
+    assert bench.of(Looked)[-1].fulfilled is False
+
+
+def test_the_wrong_floor_is_noticed_and_left_by_another_ride() -> None:
+    bench = BuildingBench(office(Caller.PEOPLE, floors=3), wrong_floors=1.0)
+    bench.go("robot1", "F2-201")
+    issue = bench.run_until(IssueDetected)
+    bench.run()
+    assert see_through(bench)
+    bench.send("robot1", Resume(execution=issue.execution))
+    noticed = bench.run_until(IssueDetected)
+    assert noticed.issue == "wrong_floor"
+    assert noticed.detection is not None
+    assert noticed.detection.explanation == "lift1 has opened at F3, and I must get to F2"
+    bench.run()
+    bench.world.wrong_floors = 0.0
+    assert see_through(bench)
+    bench.send("robot1", Resume(execution=issue.execution))
+    bench.run()
+    assert bench.of(Finished)
+    assert bench.world.robots[0].at.floor == "F2"
+    assert bench.world.touches == 0
+
+
+@pytest.mark.parametrize("seed", [3, 4])
+def test_robots_that_want_one_elevator_ride_one_after_the_other(seed: int) -> None:
+    bench = BuildingBench(office(Caller.ROBOTS, floors=2, robots=3, seed=seed), seed=seed)
+    rooms = {"F1": "F2-201", "F2": "F1-101"}
+    for number, robot in enumerate(bench.scene.robots):
+        floor = bench.world.robots[number].at.floor
+        bench.go(robot, f"{rooms[floor][:-1]}{number + 1}")
+    bench.run()
+    assert len(bench.of(Finished)) == 3
+    assert not bench.of(IssueDetected)
+    assert bench.world.touches == 0
+
+
+def test_who_gives_up_wants_the_elevator_no_more() -> None:
+    bench = BuildingBench(office(Caller.PEOPLE))
+    bench.go("robot1", "F2-201")
+    bench.run_until(IssueDetected)
+    bench.run()
+    bench.send("robot1", Interrupt(retreat=True))
+    bench.run()
+    assert bench.world.intervene(PRESS) == "nothing is in the way of any robot"
+
+
+def test_who_is_left_in_a_cabin_gets_out_or_rides_on() -> None:
+    bench = BuildingBench(office(Caller.ROBOTS, floors=3))
+    bench.go("robot1", "F3-301")
+    while bench.world.elevators.cabins["lift1"].state is not CabinState.MOVING or not any(
+        each.name == "ride to F3" for each in bench.of(StepStarted)
+    ):
+        bench.group.advance(0.5)
+    bench.send("robot1", Interrupt(retreat=True))
+    bench.run()
+    while bench.world.elevators.cabins["lift1"].state is not CabinState.OPEN:
+        bench.world.advance_cycle()
+    bench.go("robot1", "F2-201")
+    bench.run()
+    assert bench.of(Finished)
+    assert bench.world.robots[0].at.floor == "F2"
+    assert bench.world.touches == 0
+
+
+def test_a_building_is_rebuilt_in_the_middle_of_a_ride() -> None:
+    scene = office(Caller.ROBOTS)
+    bench = BuildingBench(scene)
+    bench.go("robot1", "F2-201")
+    while bench.world.elevators.cabins["lift1"].state is not CabinState.MOVING:
+        bench.group.advance(0.05)
+    snapshot = json.loads(json.dumps(bench.group.snapshot()))
+    again = BUILDINGS.create_agents(
+        WorldSetup(robots=["robot1"], scene=scene, seed=1, speed=None, snapshot=snapshot)
+    )
+    assert again.snapshot() == snapshot
