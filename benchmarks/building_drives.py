@@ -138,7 +138,10 @@ def main() -> int:
         drives = Drives(scene, arguments.first + number)
         drives.run(arguments.seconds)
         pace = arguments.seconds / (time.process_time() - began_s)
-        print(f"{name}: {drives.touches} touches, {_told(drives.counts)}; {pace:.1f} x real time")
+        print(
+            f"{name}: {drives.touches} touches, {_told(drives.counts)}; {pace:.1f} x real time",
+            flush=True,
+        )
         total += drives.counts
         touches += drives.touches
     print(f"all {len(scenes)}: {touches} touches, {_told(total)}")
