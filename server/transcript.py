@@ -66,7 +66,7 @@ DEEDS: dict[Act, str] = {
     Act.HAND_OVER: "hands {object} over",
     Act.MOVE: "moves {object}",
     Act.BLOCK: "stands in the robot's way",
-    Act.RELEASE: "gets out of the robot's way",
+    Act.RELEASE: "clears the robot's way",
     Act.COVER: "covers the head camera",
     Act.UNCOVER: "clears the head camera's view",
 }

@@ -114,4 +114,5 @@ class Base(Effector[BaseBody]):
         return WayFollower(body.limits, body.radius_m, body.control_period_s, way, to)
 
     def _look_around(self, here: BasePose) -> Seen:
-        return self._surroundings.take(self.body.scan(), here, self.body.time_s())
+        known = self.ways.walls(here)
+        return self._surroundings.take(self.body.scan(), here, self.body.time_s(), known)

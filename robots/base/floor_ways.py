@@ -13,12 +13,14 @@ from mend.maps.building.clearance import clearance_m
 from mend.maps.building.crossing import crossed_by
 from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 from mend.robots.base.body import BasePose
+from mend.robots.base.motion.surroundings import NOTHING, Points
 from mend.robots.base.ways import Ride
 from mend.robots.execution.command_error import CommandError
 from mend.tasks.frames import Frame
 
 Point = tuple[float, float]
 
+_AROUND_M, _EVERY_M = 6.0, 0.15
 _THROUGH_CABIN_S = 1e6
 """No way leads through a cabin where there is any other."""
 
@@ -39,6 +41,7 @@ class FloorWays:
         self._speed_m_s = speed_m_s
         self._needs_m = needs_m
         self._turn = turn
+        self._walls: dict[str, Points] = {}
         self._stops = _stops(building)
         self._cabins = [
             (floor, stop_of(building, elevator, floor))
@@ -90,6 +93,17 @@ class FloorWays:
     def floor(self, pose: BasePose) -> str | None:
         """What the floor of a pose is called; None between floors."""
         return self._building.floor_at(pose.z)
+
+    def walls(self, here: BasePose) -> Points:
+        """Points of the walls of the floor around a pose, closer together than a base is wide."""
+        floor = self._building.floor_at(here.z)
+        if floor is None:
+            return NOTHING
+        if floor not in self._walls:
+            self._walls[floor] = _sampled(self._building.floors[floor].wall_segments, self._frame)
+        points = self._walls[floor]
+        away = np.abs(points - np.array([here.x, here.y]))
+        return np.asarray(points[away.max(axis=1, initial=0.0) < _AROUND_M])
 
     def door_at(self, here: BasePose, ahead: Point) -> str | None:
         """The door, or the elevator, between a pose and a point ahead."""
@@ -181,6 +195,16 @@ class FloorWays:
 
     def _on_map(self, pose: BasePose) -> Point:
         return self._frame.to_scene(pose.x, pose.y)
+
+
+def _sampled(walls: Points, frame: Frame) -> Points:
+    """Points of walls (n, 4) of the building, in a robot's frame."""
+    points = [np.zeros((0, 2))]
+    for x0, y0, x1, y1 in walls:
+        count = 2 + int(math.hypot(x1 - x0, y1 - y0) / _EVERY_M)
+        points.append(np.linspace((x0, y0), (x1, y1), count))
+    placed = [frame.to_robot(x, y) for x, y in np.concatenate(points)]
+    return np.array(placed).reshape(-1, 2)
 
 
 def _stops(building: Building) -> dict[str, str]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from mend.robots.base.body import BasePose
+from mend.robots.base.motion.surroundings import NOTHING, Points
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +48,10 @@ class Ways(Protocol):
         """What the floor of a pose is called; None where there is none."""
         ...
 
+    def walls(self, here: BasePose) -> Points:
+        """Points (n, 2) of the walls around a pose."""
+        ...
+
     def door_at(self, here: BasePose, ahead: tuple[float, float]) -> str | None:
         """The door between a pose and a point ahead; None where there is none."""
         ...
@@ -66,6 +71,10 @@ class StraightWays:
     def floor(self, pose: BasePose) -> str | None:  # noqa: ARG002
         """It has no name."""
         return None
+
+    def walls(self, here: BasePose) -> Points:  # noqa: ARG002
+        """None: it knows of none."""
+        return NOTHING
 
     def door_at(self, here: BasePose, ahead: tuple[float, float]) -> str | None:  # noqa: ARG002
         """None: it knows of no doors."""

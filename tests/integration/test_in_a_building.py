@@ -16,6 +16,7 @@ from mend.server.settings import Settings
 from mend.sim.building.scene import scene_of
 from mend.tasks.scenario import Person
 
+EXAMPLES = Path(__file__).parents[2] / "examples" / "buildings"
 PATIENCE_S = 120.0
 ROUNDS = {
     "name": "rounds",
@@ -48,4 +49,34 @@ async def test_shut_doors_are_asked_about_and_the_rooms_are_reached(tmp_path: Pa
     assert issues == {"door_closed"}
     resolved = [each for each in events if isinstance(each, ev.Resolved)]
     assert resolved
+    assert all(each.resolution == "robot_finish" and each.helped for each in resolved)
+
+
+@pytest.mark.slow
+async def test_the_published_plan_asks_rides_notices_the_wrong_floor_and_arrives(
+    tmp_path: Path,
+) -> None:
+    scene = (EXAMPLES / "scenes" / "office_at_work.yaml").read_text("utf-8")
+    task = (EXAMPLES / "conditional_plan.yaml").read_text("utf-8")
+    settings = Settings(port=0, data_dir=tmp_path, log_level="error", speech_voice="none")
+    async with open_service(settings) as service, asyncio.timeout(PATIENCE_S):
+        await service.library.scenes.save("office_at_work", scene)
+        await service.library.trees.save("conditional_plan", task)
+        request = RunRequest(
+            tree="conditional_plan",
+            world="building",
+            speed="max",
+            seed=4,
+            answers=["yes"] * 20,
+            person=Person(acts=True),
+            world_options={"shut_doors": 1.0, "wrong_floors": 0.6},
+        )
+        run = await service.runtime.start_run(request)
+        view = await service.runtime.wait_for_end(run.id)
+        events = list(await service.journal.read(0, 100_000, run.id))
+    assert view.status is RunStatus.FINISHED, view.result
+    issues = [each.issue for each in events if isinstance(each, ev.IssueRaised)]
+    assert issues[0] == "elevator_help"
+    assert "wrong_floor" in issues
+    resolved = [each for each in events if isinstance(each, ev.Resolved)]
     assert all(each.resolution == "robot_finish" and each.helped for each in resolved)

@@ -12,6 +12,7 @@ from mend.robots.base.body import BasePose, RangeScan
 
 Points = NDArray[np.float64]
 """(n, 2), metres."""
+NOTHING = np.zeros((0, 2))
 
 _NEAR_M = 6.0
 """What is farther away is not remembered."""
@@ -23,11 +24,17 @@ _BEHIND_M = 0.1
 """So much nearer than what is seen, or farther: an edge seen by another beam may differ by less."""
 _HIDDEN_M = 0.03
 """What lies so far behind what is seen there is hidden: more than a laser's noise."""
+_KNOWN_BEHIND_M = 0.3
+"""So far behind what is seen there is what a map has: more than a pose on it is off."""
 _MOVED_S = 0.3
 """What came to where nothing was so long ago moves."""
 _FASTEST_M_S = 1.5
 """Nothing is believed to come faster: people walk, and robots drive, as fast."""
 _POSES = 64
+_FILLED_M, _WIDEST_GAP_M = 0.15, 6.0
+"""Hits of one wall that are farther apart than the first have points between them."""
+_OFF_LINE_M = 0.1
+"""Hits of one wall are no farther from its line."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,6 +74,13 @@ class _Placed:
         sees_m = np.where((after < len(angles)) | closed, beside, np.nan)
         return np.hypot(*offset.T), sees_m
 
+    def hides(self, points: Points) -> Points:
+        """Those near points that something seen stands before."""
+        if not len(points):
+            return points
+        away_m, sees_m = self.range_m(points)
+        return points[(away_m < _NEAR_M) & (sees_m < away_m - _KNOWN_BEHIND_M)]
+
 
 class Surroundings:
     """Takes scan after scan; what stands still is where it was, however far the base drove.
@@ -82,8 +96,11 @@ class Surroundings:
         self.seen = Seen.still(self._hidden)
         """In the frame of the poses."""
 
-    def take(self, scan: RangeScan, here: BasePose, time_s: float) -> Seen:
-        """Called in every control cycle, with the newest scan and where the base is now."""
+    def take(self, scan: RangeScan, here: BasePose, time_s: float, known: Points = NOTHING) -> Seen:
+        """Called in every control cycle, with the newest scan and where the base is now.
+
+        `known` (n, 2) is what a map has there: it counts where something hides it.
+        """
         self._poses.append((time_s, here))
         if not self._placed or scan is not self._placed[-1].scan:
             at = min(self._poses, key=lambda each: abs(each[0] - scan.time))[1]
@@ -92,9 +109,10 @@ class Surroundings:
             self._remember(placed)
             self._still = speeds_m_s == 0.0
             self._placed.append(placed)
-            hidden = np.zeros(len(self._hidden))
+            hidden = np.concatenate([self._hidden, placed.hides(known)])
             self.seen = Seen(
-                np.concatenate([placed.points, self._hidden]), np.concatenate([speeds_m_s, hidden])
+                np.concatenate([placed.points, hidden]),
+                np.concatenate([speeds_m_s, np.zeros(len(hidden))]),
             )
         return self.seen
 
@@ -155,10 +173,39 @@ def _beside(points: Points, now: _Placed) -> NDArray[np.bool_]:
 
 
 def points_of(scan: RangeScan, at: BasePose) -> Points:
-    """What a scan shows (n, 2) that was made at a pose, in the pose's frame."""
+    """What a scan shows (n, 2) that was made at a pose, in the pose's frame.
+
+    Along a wall that is seen at a grazing angle hits lie far apart: it is closed between them.
+    """
     seen = np.isfinite(scan.ranges_m)
     ranges_m, bearings = scan.ranges_m[seen], scan.angles_rad[seen] + at.yaw
-    return np.column_stack([at.x + ranges_m * np.cos(bearings), at.y + ranges_m * np.sin(bearings)])
+    hits = np.column_stack([at.x + ranges_m * np.cos(bearings), at.y + ranges_m * np.sin(bearings)])
+    return np.concatenate([hits, _between(hits, np.flatnonzero(seen))])
+
+
+def _between(hits: Points, beams: NDArray[np.intp]) -> Points:
+    """Points of walls between the hits (n, 2) of beams that are next to each other."""
+    if len(hits) < 3:
+        return np.zeros((0, 2))
+    steps = np.diff(hits, axis=0)
+    gaps_m = np.hypot(*steps.T)
+    shorter_m = np.maximum(np.minimum(gaps_m[:-1], gaps_m[1:]), 1e-6)
+    # How far the end of the longer of two steps is from the line of the other.
+    turns = np.abs(_cross(steps[:-1], steps[1:])) / shorter_m
+    straight = np.zeros(len(steps), np.bool_)
+    straight[1:] = turns < _OFF_LINE_M
+    straight[:-1] |= turns < _OFF_LINE_M
+    wide = (np.diff(beams) == 1) & (gaps_m > _FILLED_M) & (gaps_m < _WIDEST_GAP_M)
+    filled = [
+        hits[each]
+        + np.arange(1.0, gaps_m[each] / _FILLED_M)[:, None] * _FILLED_M / gaps_m[each] * steps[each]
+        for each in np.flatnonzero(straight & wide)
+    ]
+    return np.concatenate([np.zeros((0, 2)), *filled])
+
+
+def _cross(a: Points, b: Points) -> NDArray[np.float64]:
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
 def in_frame_of(points: Points, pose: BasePose) -> Points:

@@ -26,6 +26,19 @@ def test_what_it_sees_is_where_it_is_however_the_base_stands() -> None:
     assert np.allclose(seen.points[:, 0], 3.0)
 
 
+def test_a_wall_that_is_seen_at_a_grazing_angle_has_no_holes() -> None:
+    seen = take(Surroundings(), Floor([(-1.0, 0.3, 6.0, 0.3)]), HERE, 0.0)
+    assert all(knows_of(seen, x, 0.3) for x in np.arange(0.0, 5.0, 0.1))
+
+
+def test_what_is_open_beside_something_is_not_closed() -> None:
+    post = (1.5, 0.0, 0.2)
+    seen = take(Surroundings(), Floor([WALL], [post]), HERE, 0.0)
+    edge = math.asin(0.2 / 1.5)
+    beside = [(d * math.cos(edge), d * math.sin(edge) + 0.05) for d in np.arange(1.8, 2.8, 0.1)]
+    assert not any(knows_of(seen, *each) for each in beside)
+
+
 def test_an_older_scan_is_of_where_the_base_was_then() -> None:
     surroundings, floor = Surroundings(), Floor([WALL])
     scan = RangeScan(floor.ranges_m(HERE), BEAMS, 0.0)
