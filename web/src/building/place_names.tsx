@@ -2,7 +2,7 @@
 import { useMemo } from "preact/hooks";
 import { type Named, placeLabels, type Rect } from "./labels";
 import type { PlaceKind, PlanFloor } from "./plan";
-import type { Sight } from "./sight";
+import type { Sight, Size } from "./sight";
 import { textWidth } from "./text_width";
 
 const HEIGHT_PX = 14;
@@ -61,8 +61,15 @@ export function PlaceNames({ names, sight, hidden }: { names: readonly PlacedNam
   );
 }
 
-/** Which names would be under one of some boxes, which are in pixels of the view. */
-export function namesUnder(names: readonly PlacedName[], sight: Sight, boxes: readonly Rect[]): ReadonlySet<string> {
+/** Which names would be under one of some boxes, which are in pixels of the view, or are cut off by its edges. */
+export function namesHidden(
+  names: readonly PlacedName[],
+  sight: Sight,
+  size: Size,
+  boxes: readonly Rect[],
+): ReadonlySet<string> {
+  const cut = ({ left, top, right, bottom }: Rect) =>
+    left + sight.left < 0 || top + sight.top < 0 || right + sight.left > size.width || bottom + sight.top > size.height;
   const under = ({ left, top, right, bottom }: Rect) =>
     boxes.some(
       (box) =>
@@ -71,5 +78,5 @@ export function namesUnder(names: readonly PlacedName[], sight: Sight, boxes: re
         box.top - sight.top < bottom &&
         box.bottom - sight.top > top,
     );
-  return new Set(names.filter(({ rect }) => under(rect)).map(({ name }) => name));
+  return new Set(names.filter(({ rect }) => cut(rect) || under(rect)).map(({ name }) => name));
 }

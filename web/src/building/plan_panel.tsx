@@ -8,7 +8,7 @@ import { robotsAtWork } from "./at_work";
 import { FLOOR_PANEL, FloorTabs, floorTab } from "./floor_tabs";
 import { FloorDrawing, FloorLegend } from "./floor_drawing";
 import type { Rect } from "./labels";
-import { namesUnder, PlaceNames, useNames } from "./place_names";
+import { namesHidden, PlaceNames, useNames } from "./place_names";
 import type { Plan, PlanFloor } from "./plan";
 import { RobotList } from "./robot_list";
 import { type Marks, RobotMarks } from "./robot_marks";
@@ -44,7 +44,7 @@ export function PlanPanel({ plan, run, moment, state }: PlanPanelProps) {
   const { sight } = controls;
   const names = useNames(floor, sight.scale);
   const [taken, setTaken] = useState<readonly Rect[]>([]);
-  const hidden = useSteady(namesUnder(names, sight, taken));
+  const hidden = useSteady(namesHidden(names, sight, size, taken));
   // What is moved by itself has to follow what is drawn anew.
   useEffect(() => marks.current?.draw(positions.current));
   const going = useRef<string | null>(null);
