@@ -30,7 +30,7 @@ const standing = { x: 2.2, y: 1.1, z: 3.5, yaw: 0, moving: true, seen_s: null };
 
 describe("robots at work", () => {
   it("know their goal as the building calls it", () => {
-    const [one, two] = robotsAtWork(state({ executions: new Map([[ONE, drives("/0/1")]]) }), plan);
+    const [one, two] = robotsAtWork(state({ executions: new Map([[ONE, drives("/1")]]) }), plan);
     expect(one).toMatchObject({ name: "ROBOT1", task: "working", leaf: "go to 2", lost: false });
     expect(one?.goal).toMatchObject({ name: "204", floor: "F2", x: 2, y: 1 });
     expect(two).toMatchObject({ name: "ROBOT2", task: "idle", goal: null });
@@ -38,7 +38,7 @@ describe("robots at work", () => {
 
   it("ask, are helped, hold, and end", () => {
     const talk = (helpAwaited: unknown) => new Map([["d", { opened: { robot: ONE }, helpAwaited } as unknown as OpenDialogue]]);
-    const executions = new Map([[ONE, drives("/0/1", true)]]);
+    const executions = new Map([[ONE, drives("/1", true)]]);
     const taskOf = (changes: Partial<RunState>) => robotsAtWork(state({ executions, ...changes }), plan)[0]?.task;
     expect(taskOf({ dialogues: talk(null) })).toBe("asking");
     expect(taskOf({ dialogues: talk({}) })).toBe("helped");
@@ -47,7 +47,7 @@ describe("robots at work", () => {
   });
 
   it("drive only while they move", () => {
-    const [one] = robotsAtWork(state({ executions: new Map([[ONE, drives("/0/1")]]) }), plan);
+    const [one] = robotsAtWork(state({ executions: new Map([[ONE, drives("/1")]]) }), plan);
     expect(activityOf(one!, true)).toBe("driving");
     expect(activityOf(one!, false)).toBe("waiting");
     expect(doingInWords(one!, "driving", "F1")).toBe("drives to 204 on F2");
@@ -56,7 +56,7 @@ describe("robots at work", () => {
 });
 
 describe("seenRobots", () => {
-  const robots = robotsAtWork(state({ executions: new Map([[ONE, drives("/0/1")]]), lost: new Set([TWO]) }), plan);
+  const robots = robotsAtWork(state({ executions: new Map([[ONE, drives("/1")]]), lost: new Set([TWO]) }), plan);
   const about = { plan, past: false, atLeast: false };
 
   it("say where each is and what it does", () => {
