@@ -50,7 +50,7 @@ function Map({ plan, standing, name }: { plan: Plan; standing: Standing; name: s
       <div class="plan-view" ref={view}>
         <FloorDrawing floor={floor} sight={sight} label={`Map of ${floor.name}: ${name} is ${where}`}>
           <PlaceNames names={names} sight={sight} hidden={namesHidden(names, sight, size, [mark, FLOOR_SIGN])} />
-          <g class={`plan-robot ${seen_s === null ? "asking" : "not-seen"}`}>
+          <g class={`plan-robot ${seen_s === null ? "robot-asking" : "robot-not-seen"}`}>
             <g class="plan-mark" transform={`translate(${at.x} ${at.y}) rotate(${(-standing.yaw * 180) / Math.PI}) scale(${radius})`}>
               <circle r={1} />
               <path d="M0.75 0L-0.35 0.5L-0.1 0L-0.35 -0.5Z" />

@@ -22,7 +22,7 @@ export function RobotList({ seen, onShow }: { seen: readonly SeenRobot[]; onShow
 function Doing({ seen: { unseen, activity, where } }: { seen: SeenRobot }) {
   if (unseen !== null || where === null) return <span class="badge plan-badge">✕ Not seen</span>;
   return (
-    <span class={`badge plan-badge ${activity}`}>
+    <span class={`badge plan-badge robot-${activity}`}>
       {ACTIVITY_SIGNS[activity]} {ACTIVITY_WORDS[activity]}
     </span>
   );

@@ -54,7 +54,7 @@ export function RobotMarks(props: RobotMarksProps) {
     <>
       <svg class="plan-robots-drawing" aria-hidden="true" ref={svg}>
         {robots.map((each) => (
-          <g key={each.robot} class={`plan-robot ${stateOf(each)}`} data-robot={each.robot} data-floor={floor.name}>
+          <g key={each.robot} class={`plan-robot robot-${stateOf(each)}`} data-robot={each.robot} data-floor={floor.name}>
             <line class="plan-way" />
             {/* How sure it is of its pose belongs under its mark, in metres, as the mark's radius. */}
             <g class="plan-mark">
@@ -72,7 +72,7 @@ export function RobotMarks(props: RobotMarksProps) {
           const state = stateOf(each);
           const found = seen.find(({ robot }) => robot === each.robot);
           return (
-            <div key={each.robot} class={`plan-robot-name ${state}`} data-robot={each.robot}>
+            <div key={each.robot} class={`plan-robot-name robot-${state}`} data-robot={each.robot}>
               <b>
                 {state === "not-seen" ? "✕" : ACTIVITY_SIGNS[state]} {each.name}
               </b>
@@ -100,8 +100,9 @@ function createLayer() {
       const at = here ? drawnAt(sight, standing.x, standing.y) : null;
       drawMark(svg.children[index] as SVGGElement, at, standing, radius, goal, floor, sight);
       const name = names.children[index] as HTMLElement;
-      name.hidden = at === null || at.x < 0 || at.y < 0 || at.x > size.width || at.y > size.height;
-      return at === null || name.hidden ? [] : [{ robot, at, name }];
+      const away = at === null || at.x < 0 || at.y < 0 || at.x > size.width || at.y > size.height;
+      if (name.hidden !== away) name.hidden = away;
+      return away ? [] : [{ robot, at, name }];
     });
     for (const goal of svg.querySelectorAll<SVGCircleElement>(".plan-goal")) drawGoal(goal, robots, sight);
     const now = performance.now();
@@ -127,7 +128,8 @@ function createLayer() {
     }
     for (const { robot, at, name } of shown) {
       const { dx, dy } = offsets.get(robot) ?? { dx: 0, dy: 0 };
-      name.style.transform = `translate(${(at.x + dx).toFixed(1)}px, ${(at.y + dy).toFixed(1)}px)`;
+      const there = `translate(${(at.x + dx).toFixed(1)}px, ${(at.y + dy).toFixed(1)}px)`;
+      if (name.style.transform !== there) name.style.transform = there;
     }
   }
   return { draw };
@@ -142,25 +144,34 @@ function drawMark(
   floor: PlanFloor,
   sight: Sight,
 ): void {
-  group.style.display = at === null ? "none" : "";
+  show(group, at !== null);
   if (at === null || standing === undefined) return;
   const [way, mark] = group.children as unknown as [SVGLineElement, SVGGElement];
   const degrees = (-standing.yaw * 180) / Math.PI;
   const turned = `rotate(${degrees.toFixed(1)}) scale(${radius.toFixed(2)})`;
-  mark.setAttribute("transform", `translate(${at.x.toFixed(1)} ${at.y.toFixed(1)}) ${turned}`);
+  put(mark, "transform", `translate(${at.x.toFixed(1)} ${at.y.toFixed(1)}) ${turned}`);
   const there = goal !== null && goal.floor === floor.name ? drawnAt(sight, goal.x, goal.y) : null;
-  way.style.display = there === null ? "none" : "";
+  show(way, there !== null);
   if (there === null) return;
   const ends = { x1: at.x, y1: at.y, x2: there.x, y2: there.y };
-  for (const [end, value] of Object.entries(ends)) way.setAttribute(end, value.toFixed(1));
+  for (const [end, value] of Object.entries(ends)) put(way, end, value.toFixed(1));
 }
 
 function drawGoal(mark: SVGCircleElement, robots: readonly AtWork[], sight: Sight): void {
   const goal = robots.find(({ robot }) => robot === mark.dataset.goal)?.goal;
   if (goal === undefined || goal === null) return;
   const { x, y } = drawnAt(sight, goal.x, goal.y);
-  mark.setAttribute("cx", x.toFixed(1));
-  mark.setAttribute("cy", y.toFixed(1));
+  put(mark, "cx", x.toFixed(1));
+  put(mark, "cy", y.toFixed(1));
+}
+
+/** What is the same is left alone: the browser would draw it once more. */
+function put(element: Element, attribute: string, value: string): void {
+  if (element.getAttribute(attribute) !== value) element.setAttribute(attribute, value);
+}
+
+function show(element: Element, shown: boolean): void {
+  put(element, "display", shown ? "inline" : "none");
 }
 
 function around({ x, y }: { x: number; y: number }, radius: number): Rect {
