@@ -1,8 +1,12 @@
 // What is known of each robot at the moment that is shown, for words and lists: it changes rarely.
+import { shortened } from "../tree/words";
 import { type Activity, activityOf, type AtWork, doingInWords } from "./at_work";
 import type { Plan } from "./plan";
 import { howLong, type Standing } from "./standing";
 import { floorShownAt, whereInWords } from "./whereabouts";
+
+/** So much of a goal's name is under that of a robot; all of it is in the list. */
+const GOAL_CHARACTERS = 18;
 
 export interface SeenRobot {
   readonly robot: string;
@@ -58,7 +62,7 @@ function unseenSince(robot: AtWork, { seen_s }: Standing, past: boolean, atLeast
 }
 
 function shortly({ goal, task }: AtWork, activity: Activity): string {
-  const there = goal === null ? "" : ` → ${goal.name}`;
+  const there = goal === null ? "" : ` → ${shortened(goal.name, GOAL_CHARACTERS)}`;
   if (activity === "asking") return "asks";
   if (task === "helped") return "waits for help";
   if (activity === "idle") return "";
