@@ -105,13 +105,18 @@ ROUNDS = {
 }
 
 
+async def keep_office(service: Service) -> None:
+    """Have an office with two floors and a robot on each, and a task there."""
+    scene = scene_of(Building(random_building(7, 2, 6)), "office", 2)
+    await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
+    await service.library.trees.save("rounds", json.dumps(ROUNDS))
+
+
 async def begin_rounds(
     service: Service, speed: float | Literal["max"] = 1.0, shut_doors: float = 0.0
 ) -> UUID:
     """Start a run of two robots in an office, one on each of its floors."""
-    scene = scene_of(Building(random_building(7, 2, 6)), "office", 2)
-    await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
-    await service.library.trees.save("rounds", json.dumps(ROUNDS))
+    await keep_office(service)
     request = RunRequest(
         tree="rounds",
         world="building",

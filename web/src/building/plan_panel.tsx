@@ -14,7 +14,8 @@ import { RobotList } from "./robot_list";
 import { type Marks, RobotMarks } from "./robot_marks";
 import type { SeenRobot } from "./seen_robots";
 import { type Positions, useRobots } from "./use_robots";
-import { type SightControls, useSight, useSize } from "./use_sight";
+import { useSight, useSize } from "./use_sight";
+import { ViewButtons } from "./view_buttons";
 import "./building.css";
 
 interface PlanPanelProps {
@@ -88,22 +89,6 @@ export function PlanPanel({ plan, run, moment, state }: PlanPanelProps) {
       <p class="plan-state small quiet">{stateSentence(source, moment, seen)}</p>
       <RobotList seen={seen} onShow={show} />
     </section>
-  );
-}
-
-function ViewButtons({ controls }: { controls: SightControls }) {
-  return (
-    <div class="plan-tools" role="group" aria-label="Plan">
-      <button type="button" class="small-button" aria-label="Zoom in" onClick={controls.zoomIn}>
-        +
-      </button>
-      <button type="button" class="small-button" aria-label="Zoom out" onClick={controls.zoomOut}>
-        −
-      </button>
-      <button type="button" class="small-button" onClick={controls.fit}>
-        Fit
-      </button>
-    </div>
   );
 }
 
