@@ -105,15 +105,27 @@ ROUNDS = {
 }
 
 
+IN_THE_WAY = {
+    "name": "in_the_way",
+    "tree": "rounds",
+    # While the first robot leaves its room: there is no way round then.
+    "interventions": [{"at_s": 3.0, "do": {"act": "block"}}],
+}
+
+
 async def keep_office(service: Service) -> None:
     """Have an office with two floors and a robot on each, and a task there."""
     scene = scene_of(Building(random_building(7, 2, 6)), "office", 2)
     await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
     await service.library.trees.save("rounds", json.dumps(ROUNDS))
+    await service.library.scenarios.save("in_the_way", json.dumps(IN_THE_WAY))
 
 
 async def begin_rounds(
-    service: Service, speed: float | Literal["max"] = 1.0, shut_doors: float = 0.0
+    service: Service,
+    speed: float | Literal["max"] = 1.0,
+    shut_doors: float = 0.0,
+    scenario: str | None = None,
 ) -> UUID:
     """Start a run of two robots in an office, one on each of its floors."""
     await keep_office(service)
@@ -122,6 +134,8 @@ async def begin_rounds(
         world="building",
         speed=speed,
         seed=2,
+        scenario=scenario,
+        answers="live",
         person=Person(acts=False),
         world_options={"shut_doors": shut_doors},
     )

@@ -10,7 +10,6 @@ from test_accessibility import RULES, load_axe, violations
 
 from mend.server.composition import Service
 from mend.server.sites.requests import SiteRequest
-from mend.tasks.intervention import Act, Intervention
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
@@ -102,12 +101,9 @@ async def test_plan_is_moved_and_zoomed_with_keys_and_shows_a_robot(
 async def test_question_shows_where_the_robot_is_that_asks(
     service: Service, open_page: OpenPage
 ) -> None:
-    run = await begin_rounds(service, speed=1.0)
+    run = await begin_rounds(service, scenario="in_the_way")
     page = await open_page(f"/runs/{run}", viewport=WIDE)
     robots = page.get_by_role("list", name="Robots")
-    await expect(robot(page, "robot1")).to_be_visible(timeout=LONG_MS)
-    await wait_for_motion(robot(page, "robot1"), page)
-    await service.runtime.intervene(run, Intervention(act=Act.BLOCK))
     await expect(page.get_by_role("button", name="YES")).to_be_visible(timeout=LONG_MS)
     await expect(robots.get_by_text("Asking").first).to_be_visible(timeout=LONG_MS)
     await page.goto("/")
