@@ -110,14 +110,14 @@ class BaseSubsystem:
         return ()
 
     def layout(self, layout: PoseLayout) -> PoseLayout:
-        """Nothing but the base frame moves."""
-        return layout
+        """The base frame moves."""
+        return layout.model_copy(update={"drives": True})
 
     def show(self, poses: Poses) -> Poses:
-        """Where the base frame is."""
+        """Where the base frame is, and on which floor."""
         here = self.effector.body.pose()
         half = here.yaw / 2
-        base = (here.x, here.y, 0.0, 0.0, 0.0, math.sin(half), math.cos(half))
+        base = (here.x, here.y, here.z, 0.0, 0.0, math.sin(half), math.cos(half))
         return poses.model_copy(update={"base": base})
 
     def note(self, looked: Looked) -> None:

@@ -167,8 +167,12 @@ class ShownObject(Message):
 
 
 class PoseLayout(Message):
-    """What a robot's `poses` hold, in their order; `model` names its model files."""
+    """What a robot's `poses` hold, in their order; `model` names its model files.
 
+    `drives`: its base frame moves.
+    """
+
+    drives: bool = False
     model: Identifier | None = None
     joints: Annotated[list[Identifier], Field(max_length=256)] = []
     objects: Annotated[list[ShownObject], Field(max_length=1024)] = []
@@ -534,8 +538,9 @@ class Picture(Message):
 class Poses(Message):
     """Where everything is that the hello's `shows` names; for display only, not durable.
 
-    `base`: the robot's base frame in the world; all other poses are in the base frame. `tool`: the
-    tool point (x the approach direction, y the opening direction of the fingers).
+    `base`: the robot's base frame, as it stands now, in that in which the robot began, but z from
+    the ground of the scene; all other poses are in the base frame. `tool`: the tool point (x the
+    approach direction, y the opening direction of the fingers).
     """
 
     type: Literal["poses"] = "poses"

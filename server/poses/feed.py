@@ -6,7 +6,8 @@ from contextlib import contextmanager
 from typing import Protocol
 from uuid import UUID
 
-from mend.robots.link.messages import Hello, Poses
+from mend.robots.link.messages import IDENTITY, Hello, PoseLayout, Poses
+from mend.server.poses.bases import Bases
 from mend.server.poses.frame import Frame, encode
 from mend.server.poses.layout import RATE_HZ, Layout, lay_out
 from mend.server.poses.record import PoseRecord, PoseRecords, RecordedPoses
@@ -17,6 +18,10 @@ ShowPoses = Callable[[str, float], None]
 
 ModelAddress = Callable[[str], str | None]
 """Where the model files of a name are, if they are here."""
+
+
+ROUND_S = 0.1
+"""So long (of real time) the robots of a run wait for each other with where they are."""
 
 
 class Watcher:
@@ -56,7 +61,11 @@ class Watcher:
 
 
 class RunPoses:
-    """The poses of one run that goes on: those of the first of its robots that shows any."""
+    """The poses of one run that goes on: those of the first of its robots that shows any.
+
+    And, where robots drive, the base frames of all that do. A frame is made once each of those has
+    shown where it is, or as one does so again, or `ROUND_S` later.
+    """
 
     def __init__(
         self, state: RunState, show: ShowPoses, model: ModelAddress, records: PoseRecords | None
@@ -68,37 +77,85 @@ class RunPoses:
         self._record: PoseRecord | None = records.open(state.id) if records else None
         self._watchers: set[Watcher] = set()
         self._number = 0
+        self._shown: tuple[Hello, PoseLayout] | None = None
+        self._poses: Poses | None = None
+        self._bases = Bases(state.frames)
+        self._driving: set[str] = set()
+        self._round: set[str] = set()
+        self._round_s = 0.0
+        self._timer: asyncio.TimerHandle | None = None
         self.layout: Layout | None = None
         self.frame: Frame | None = None
 
     def robot_connected(self, hello: Hello) -> None:
         """A robot of the run is there (again)."""
-        if hello.shows is None:
+        shows = hello.shows
+        if shows is None:
             return
-        if self.layout is not None and self.layout.robot != hello.robot:
-            return
-        model = hello.shows.model
-        address = None if model is None else self._model(model)
-        layout = lay_out(self._state, hello, hello.shows, address)
-        if layout != self.layout:
-            self.layout, self.frame = layout, None
-            if self._records is not None:
-                self._records.keep_layout(layout)
-            for watcher in self._watchers:
-                watcher.lay_out(layout)
+        if shows.drives:
+            self._driving.add(hello.robot)
+        if self._shown is None or self._shown[0].robot == hello.robot:
+            self._shown = hello, shows
+        self._lay_out(*self._shown)
         self._ask()
+
+    def _lay_out(self, hello: Hello, shows: PoseLayout) -> None:
+        address = None if shows.model is None else self._model(shows.model)
+        layout = lay_out(self._state, hello, shows, address, drives=bool(self._driving))
+        if layout == self.layout:
+            return
+        self.layout, self.frame, self._poses = layout, None, None
+        if self._records is not None:
+            self._records.keep_layout(layout)
+        for watcher in self._watchers:
+            watcher.lay_out(layout)
 
     def take(self, robot: str, time_s: float, poses: Poses) -> None:
         """Pass poses on; `time_s` is of the run's clock. What fits no layout is left out."""
         layout = self.layout
-        if layout is None or layout.robot != robot or not layout.fits(poses):
+        if layout is None or robot not in self._showing(layout):
             return
-        self.frame = encode(self._number, time_s, poses)
+        if robot in self._round:
+            self._end_round()
+        if robot == layout.robot:
+            if not layout.fits(poses):
+                return
+            self._poses = poses
+        if robot in self._driving:
+            self._bases.take(robot, time_s, poses.base)
+        self._round.add(robot)
+        self._round_s = time_s
+        if self._round >= self._showing(layout):
+            self._end_round()
+        elif self._timer is None:
+            self._timer = asyncio.get_running_loop().call_later(ROUND_S, self._end_round)
+
+    def _showing(self, layout: Layout) -> set[str]:
+        return {layout.robot, *self._driving}
+
+    def _end_round(self) -> None:
+        """Make a frame of what has come, but for robots whose parts nobody knows yet."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        self._round.clear()
+        layout = self.layout
+        assert layout is not None, "poses are taken once there is a layout"
+        poses = self._poses or Poses(time=0.0, tool=IDENTITY, opening_m=0.0)
+        if not layout.fits(poses):
+            return
+        base = self._bases.of(layout.robot) or poses.base
+        poses = poses.model_copy(update={"base": base})
+        bases = self._bases.at(self._round_s, layout.robots)
+        self._pass_on(encode(self._number, self._round_s, poses, bases))
+
+    def _pass_on(self, frame: Frame) -> None:
+        self.frame = frame
         self._number += 1
         if self._record is not None:
-            self._record.add(self.frame)
+            self._record.add(frame)
         for watcher in self._watchers:
-            watcher.show(self.frame)
+            watcher.show(frame)
 
     @contextmanager
     def watched(self) -> Iterator[Watcher]:
@@ -118,14 +175,18 @@ class RunPoses:
 
     def end(self) -> None:
         """The run is over."""
+        if self._round:
+            self._end_round()
         for watcher in self._watchers:
             watcher.end()
 
     def _ask(self) -> None:
         """Poses cost nothing while nobody watches and nothing is recorded."""
-        if self.layout is not None:
-            wanted = bool(self._watchers) or self._record is not None
-            self._show(self.layout.robot, RATE_HZ if wanted else 0.0)
+        if self.layout is None:
+            return
+        wanted = bool(self._watchers) or self._record is not None
+        for robot in sorted(self._showing(self.layout)):
+            self._show(robot, RATE_HZ if wanted else 0.0)
 
 
 class PoseSource(Protocol):

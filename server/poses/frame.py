@@ -1,9 +1,10 @@
 """The binary frames in which poses go to those who watch; docs/console_api.md has the format."""
 
 import struct
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from mend.robots.link.messages import Poses
+from mend.server.poses.bases import SeenBase
 
 _HEAD = struct.Struct("<dIHH")
 _LENGTH = struct.Struct("<I")
@@ -14,8 +15,8 @@ Frame = bytes
 """One moment of a run, ready to be sent."""
 
 
-def encode(number: int, time_s: float, poses: Poses) -> Frame:
-    """One frame; `time_s` is of the run's clock."""
+def encode(number: int, time_s: float, poses: Poses, bases: Sequence[SeenBase] = ()) -> Frame:
+    """One frame; `time_s` is of the run's clock, `bases` are those of the layout's robots."""
     joints, objects = poses.joints, poses.objects
     values: list[float] = [*joints, *poses.base, *poses.tool, poses.opening_m]
     head = _HEAD.pack(time_s, number & 0xFFFFFFFF, len(joints), len(objects))
@@ -23,6 +24,7 @@ def encode(number: int, time_s: float, poses: Poses) -> Frame:
     for each in objects:
         flags = HELD * each.held | GONE * each.gone | HIDDEN * each.hidden
         parts.append(struct.pack("<7fI", *each.pose, flags))
+    parts += [struct.pack("<8f", *each.pose, each.age_s) for each in bases]
     return b"".join(parts)
 
 

@@ -67,6 +67,8 @@ class Layout(View):
     cameras: list[str]
     simulated: bool
     rate_hz: float = RATE_HZ
+    robots: list[str] = []
+    """Whose base frames each frame ends with, in this order; none where no robot drives."""
 
     def fits(self, poses: Poses) -> bool:
         """Whether poses hold what this says."""
@@ -74,8 +76,13 @@ class Layout(View):
         return joints == len(self.joints) and objects == len(self.objects)
 
 
-def lay_out(state: RunState, hello: Hello, shows: PoseLayout, model: str | None) -> Layout:
-    """The layout of a run with this robot; `model` is the address of its model files."""
+def lay_out(
+    state: RunState, hello: Hello, shows: PoseLayout, model: str | None, *, drives: bool = False
+) -> Layout:
+    """The layout of a run with this robot; `model` is the address of its model files.
+
+    `drives`: whether any robot of the run does.
+    """
     scene = state.scene
     return Layout(
         run=state.id,
@@ -99,6 +106,7 @@ def lay_out(state: RunState, hello: Hello, shows: PoseLayout, model: str | None)
         reach=ReachLayout(**hello.reach.model_dump()) if hello.reach else None,
         cameras=sorted(hello.cameras),
         simulated=hello.simulated,
+        robots=list(state.frames) if drives else [],
     )
 
 

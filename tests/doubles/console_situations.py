@@ -1,15 +1,20 @@
 """Situations that the console is looked at in: each plays a run, and opens its view."""
 
+import json
 from collections.abc import Awaitable, Callable
+from typing import Literal
 from uuid import UUID
 
 from console_in_browser import OpenPage
 from playwright.async_api import Page, expect
 from two_boxes import BENCH, BOTH
 
+from mend.maps.building.building import Building
+from mend.maps.building.random_building import random_building
 from mend.server.composition import Service
 from mend.server.runtime.requests import RunRequest
 from mend.server.sites.requests import SiteRequest
+from mend.sim.building.scene import scene_of
 from mend.tasks.intervention import Intervention
 from mend.tasks.scenario import Person
 
@@ -86,6 +91,69 @@ async def begin_two_boxes(service: Service) -> UUID:
     await service.library.trees.save("both", BOTH)
     request = RunRequest(tree="both", world="tabletop", speed=1.0, seed=2)
     return (await service.runtime.start_run(request)).id
+
+
+ROUNDS = {
+    "name": "rounds",
+    "scene": "office",
+    "tree": {
+        "and": [
+            {"behavior": "go_to", "place": place, "name": f"round_{place}"}
+            for place in ("F1-104", "F2-204", "F1-101", "F2-201")
+        ]
+    },
+}
+
+
+IN_THE_WAY = {
+    "name": "in_the_way",
+    "tree": "rounds",
+    # While the first robot leaves its room: there is no way round then.
+    "interventions": [{"at_s": 3.0, "do": {"act": "block"}}],
+}
+
+
+async def keep_office(service: Service) -> None:
+    """Have an office with two floors and a robot on each, and a task there."""
+    scene = scene_of(Building(random_building(7, 2, 6)), "office", 2)
+    await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
+    await service.library.trees.save("rounds", json.dumps(ROUNDS))
+    await service.library.scenarios.save("in_the_way", json.dumps(IN_THE_WAY))
+
+
+async def begin_rounds(
+    service: Service,
+    speed: float | Literal["max"] = 1.0,
+    shut_doors: float = 0.0,
+    scenario: str | None = None,
+) -> UUID:
+    """Start a run of two robots in an office, one on each of its floors."""
+    await keep_office(service)
+    request = RunRequest(
+        tree="rounds",
+        world="building",
+        speed=speed,
+        seed=2,
+        scenario=scenario,
+        answers="live",
+        person=Person(acts=False),
+        world_options={"shut_doors": shut_doors},
+    )
+    return (await service.runtime.start_run(request)).id
+
+
+async def run_in_building(service: Service, open_page: OpenPage) -> Page:
+    """Both robots stand before shut doors, and the first that did asks."""
+    run = await begin_rounds(service, speed=5.0, shut_doors=1.0)
+    page = await open_page(f"/runs/{run}")
+    await expect(page.get_by_role("link", name="Questions 2")).to_be_visible(timeout=PATIENCE_MS)
+    await expect(page.get_by_role("main").get_by_text("Loading …")).to_have_count(0)
+    building = page.get_by_role("tab", name="Building")
+    if await building.count() > 0:
+        await building.click()
+    robots = page.get_by_role("list", name="Robots")
+    await expect(robots.get_by_text("Asking").first).to_be_visible(timeout=PATIENCE_MS)
+    return page
 
 
 async def taken_leaf(service: Service, open_page: OpenPage) -> Page:
@@ -185,6 +253,7 @@ SITUATIONS: dict[str, Situation] = {
         no_runs,
         runs,
         live_run,
+        run_in_building,
         taken_leaf,
         finished_run,
         trees,

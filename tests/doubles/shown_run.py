@@ -10,7 +10,7 @@ from mend.robots.link.messages import Hello, PoseLayout, Poses, ReachLimits, Sho
 from mend.server.journal.events import RunStarted
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.run_state import RunState
-from mend.tasks.scene import Place, Pose, Scene, SceneObject
+from mend.tasks.scene import Base, Place, Pose, Scene, SceneObject
 
 SCENE = Scene(
     name="bench",
@@ -25,7 +25,12 @@ SHOWS = PoseLayout(
 AT = (0.5, 0.1, 0.7, 0.0, 0.0, 0.0, 1.0)
 
 
-def run_state(run: UUID = RUN) -> RunState:
+def driving_state(*robots: tuple[str, Base]) -> RunState:
+    """A run with these robots, each where it begins."""
+    return run_state(scene=SCENE.model_copy(update={"robots": dict(robots)}))
+
+
+def run_state(run: UUID = RUN, scene: Scene = SCENE) -> RunState:
     tree = definition_of({"behavior": "pick_and_place", "object": "cup", "place": "tray"})
     started = RunStarted(
         time=0.0,
@@ -33,9 +38,9 @@ def run_state(run: UUID = RUN) -> RunState:
         run=run,
         tree_name="tree",
         tree=tree.to_json(),
-        scene=SCENE.model_dump(mode="json"),
+        scene=scene.model_dump(mode="json"),
         world="tabletop",
-        robots=["arm"],
+        robots=list(scene.robots) or ["arm"],
         seed=0,
         speed=1.0,
         scenario=None,

@@ -16,12 +16,20 @@ describe("decodeFrame", () => {
     expect(frame.objects).toHaveLength(1);
     expect(frame.objects[0]).toMatchObject({ held: true, gone: false, hidden: true });
     expect(frame.objects[0]?.pose[0]).toBe(0.5);
+    expect(frame.robots).toEqual([]);
+  });
+
+  it("reads where the robots are that drive, after everything else", () => {
+    const robots = [{ x: 2, z: 3.5, age: 0.25 }, { age: Infinity }];
+    const frame = decodeFrame(frameBytes({ joints: [1], objects: [{}], robots }));
+    expect(frame.robots.map(({ age }) => age)).toEqual([0.25, Infinity]);
+    expect([...frame.robots[0]!.pose]).toEqual([2, 0, 3.5, 0, 0, 0, 1]);
   });
 
   it("refuses what is shorter or longer than it says", () => {
     const bytes = frameBytes({ joints: [0], objects: [{}] });
     expect(() => decodeFrame(bytes.slice(0, 40))).toThrow(RangeError);
-    expect(() => decodeFrame(bytes.slice(0, bytes.byteLength - 4))).toThrow("has 112 bytes, not 108");
+    expect(() => decodeFrame(bytes.slice(0, bytes.byteLength - 4))).toThrow("has 112 bytes and 32 a robot, not 108");
   });
 });
 

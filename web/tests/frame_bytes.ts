@@ -5,10 +5,12 @@ interface Wanted {
   joints?: number[];
   opening?: number;
   objects?: { x?: number; y?: number; yaw?: number; flags?: number }[];
+  robots?: { x?: number; y?: number; z?: number; yaw?: number; age?: number }[];
 }
 
-export function frameBytes({ time = 0, number = 0, joints = [], opening = 0, objects = [] }: Wanted): ArrayBuffer {
-  const bytes = new ArrayBuffer(76 + 4 * joints.length + 32 * objects.length);
+export function frameBytes(wanted: Wanted): ArrayBuffer {
+  const { time = 0, number = 0, joints = [], opening = 0, objects = [], robots = [] } = wanted;
+  const bytes = new ArrayBuffer(76 + 4 * joints.length + 32 * objects.length + 32 * robots.length);
   const view = new DataView(bytes);
   view.setFloat64(0, time, true);
   view.setUint32(8, number, true);
@@ -26,6 +28,9 @@ export function frameBytes({ time = 0, number = 0, joints = [], opening = 0, obj
     put(x, y, 0.7, 0, 0, Math.sin(yaw / 2), Math.cos(yaw / 2));
     view.setUint32(at, flags, true);
     at += 4;
+  }
+  for (const { x = 0, y = 0, z = 0, yaw = 0, age = 0 } of robots) {
+    put(x, y, z, 0, 0, Math.sin(yaw / 2), Math.cos(yaw / 2), age);
   }
   return bytes;
 }

@@ -1,17 +1,20 @@
 """Poses reach everybody who watches, only the latest, and are asked for only if anybody does."""
 
 import asyncio
+import math
+import struct
 from pathlib import Path
 
 import pytest
 from sample_events import RUN
-from shown_run import SHOWS, hello, poses, run_state
+from shown_run import SHOWS, driving_state, hello, poses, run_state
 
-from mend.robots.link.messages import PoseLayout
+from mend.robots.link.messages import IDENTITY, PoseLayout, Poses
 from mend.server.poses.feed import PoseFeed, RunPoses, Watcher
 from mend.server.poses.frame import time_of
 from mend.server.poses.layout import Layout
 from mend.server.poses.record import PoseRecords
+from mend.tasks.scene import Base
 
 
 class Asked(list[tuple[str, float]]):
@@ -157,3 +160,79 @@ async def test_the_end_of_a_run_ends_the_watching_after_the_last_frame(
         assert await waiting is not None
         assert await watcher.next() is None
     assert feed.of(RUN) is None
+
+
+class Driven:
+    """A run with two robots that drive, the second of which begins at (10, 4), turned to y."""
+
+    def __init__(self, asked: Asked) -> None:
+        self.feed = PoseFeed(asked.show, lambda _: None)
+        self.run = self.feed.open(driving_state(("first", Base(x=0, y=0)), ("second", TURNED)))
+        for each in ("first", "second"):
+            self.run.robot_connected(hello(PoseLayout(drives=True), robot=each))
+
+    def at(self, robot: str, time_s: float, x: float, y: float = 0.0, z: float = 0.0) -> None:
+        base = (x, y, z, 0.0, 0.0, 0.0, 1.0)
+        self.run.take(robot, time_s, Poses(time=0.0, base=base, tool=IDENTITY, opening_m=0.0))
+
+    def bases(self) -> list[tuple[float, ...]]:
+        """Of each robot x, y, z, the quaternion, and how old that is."""
+        assert self.run.frame is not None
+        values = struct.unpack("<16f", self.run.frame[76:])
+        return [values[:8], values[8:]]
+
+
+TURNED = Base(x=10.0, y=4.0, yaw=math.pi / 2)
+
+
+async def test_bases_of_all_robots_are_in_the_scenes_frame(asked: Asked) -> None:
+    driven = Driven(asked)
+    driven.at("first", 1.0, 2.0)
+    driven.at("second", 1.0, 3.0, z=3.5)
+    first, second = driven.bases()
+    assert first == (2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+    half = math.sqrt(0.5)
+    assert second == pytest.approx((10.0, 7.0, 3.5, 0.0, 0.0, half, half, 0.0))
+    assert driven.run.layout is not None
+    assert driven.run.layout.robots == ["first", "second"]
+    assert set(asked) == {("first", 0.0), ("second", 0.0)}
+
+
+async def test_a_frame_waits_for_all_who_drive(asked: Asked) -> None:
+    driven = Driven(asked)
+    driven.at("second", 1.0, 3.0)
+    assert driven.run.frame is None
+    driven.at("first", 1.0, 2.0)
+    assert driven.run.frame is not None
+
+
+async def test_a_robot_that_says_nothing_more_is_shown_where_it_was_and_how_long_ago(
+    asked: Asked,
+) -> None:
+    driven = Driven(asked)
+    driven.at("first", 1.0, 2.0)
+    driven.at("first", 2.0, 3.0)
+    assert driven.bases()[1][7] == math.inf
+    driven.at("second", 2.0, 5.0)
+    for time_s in (6.0, 7.0, 8.0):
+        driven.at("first", time_s, 4.0)
+    first, second = driven.bases()
+    assert (first[0], first[7]) == (4.0, 0.0)
+    assert (second[1], second[7]) == (9.0, 5.0)
+
+
+async def test_a_frame_comes_although_a_robot_stays_silent(asked: Asked) -> None:
+    driven = Driven(asked)
+    with driven.run.watched() as watcher:
+        await layout_from(watcher)
+        driven.at("first", 1.0, 2.0)
+        assert await time_from(watcher) == 1.0
+
+
+async def test_the_last_that_was_shown_is_passed_on_at_the_end(asked: Asked) -> None:
+    driven = Driven(asked)
+    with driven.run.watched() as watcher:
+        await layout_from(watcher)
+        driven.at("first", 1.0, 2.0)
+        driven.feed.close(RUN)
+        assert await time_from(watcher) == 1.0

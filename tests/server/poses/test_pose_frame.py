@@ -1,11 +1,13 @@
 """Frames hold what the documented format says, and come back whole out of what is stored."""
 
+import math
 import struct
 
 from hypothesis import given
 from hypothesis import strategies as st
 
 from mend.robots.link.messages import Poses, ShownPose
+from mend.server.poses.bases import SeenBase
 from mend.server.poses.frame import encode, framed, time_of, unframed
 
 number = st.floats(-1e6, 1e6, width=32)
@@ -23,6 +25,7 @@ shown = st.builds(
     tool=pose,
     opening_m=number,
     objects=st.lists(shown, max_size=8),
+    bases=st.lists(st.builds(SeenBase, pose, st.floats(0, math.inf, width=32)), max_size=3),
 )
 def test_a_frame_can_be_read_as_documented(
     count: int,
@@ -32,6 +35,7 @@ def test_a_frame_can_be_read_as_documented(
     tool: tuple[float, ...],
     opening_m: float,
     objects: list[ShownPose],
+    bases: list[SeenBase],
 ) -> None:
     poses = Poses.model_validate(
         {
@@ -44,8 +48,8 @@ def test_a_frame_can_be_read_as_documented(
             "objects": objects,
         }
     )
-    frame = encode(count, time_s, poses)
-    assert len(frame) == 76 + 4 * len(joints) + 32 * len(objects)
+    frame = encode(count, time_s, poses, bases)
+    assert len(frame) == 76 + 4 * len(joints) + 32 * (len(objects) + len(bases))
     assert struct.unpack_from("<dIHH", frame) == (time_s, count, len(joints), len(objects))
     assert time_of(frame) == time_s
     assert list(struct.unpack_from(f"<{len(joints)}f", frame, 16)) == joints
@@ -57,6 +61,9 @@ def test_a_frame_can_be_read_as_documented(
         *values, flags = struct.unpack_from("<7fI", frame, after + 60 + 32 * index)
         assert tuple(values) == each.pose
         assert flags == 1 * each.held + 2 * each.gone + 4 * each.hidden
+    after += 60 + 32 * len(objects)
+    for index, seen in enumerate(bases):
+        assert struct.unpack_from("<8f", frame, after + 32 * index) == (*seen.pose, seen.age_s)
 
 
 @given(st.lists(st.binary(min_size=16, max_size=64), max_size=6), st.integers(0, 40))

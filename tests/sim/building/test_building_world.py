@@ -131,3 +131,13 @@ def test_nobody_stands_in_a_wall_or_in_a_robot() -> None:
         bench.world.bystanders.clear()
     assert "" in answers
     assert bench.world.touches == 0
+
+
+def test_robots_show_on_which_floor_they_are() -> None:
+    scene = scene_of(made_up(floors=2), "office", 2)
+    bench = BuildingBench(scene)
+    bench.go("robot2", next(each for each in scene.places if each.startswith("F2-")))
+    bench.run()
+    shown = [each.poses().base[2] for each in bench.group.agents]
+    assert shown == [each.z for each in scene.robots.values()]
+    assert shown[0] != shown[1]

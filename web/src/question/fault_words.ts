@@ -1,7 +1,7 @@
 // What went wrong, in a sentence for somebody who has never seen the robot.
 import type { DialogueView } from "../wire/types";
 
-type About = Pick<DialogueView, "issue" | "object" | "name" | "robot">;
+type About = Pick<DialogueView, "issue" | "object" | "name" | "robot"> & Partial<Pick<DialogueView, "detection">>;
 
 const SENTENCES: Readonly<Record<string, (part: string) => string>> = {
   missed: (part) => `The gripper closed, but the ${part} is not in it.`,
@@ -14,9 +14,16 @@ const SENTENCES: Readonly<Record<string, (part: string) => string>> = {
   blocked: () => "Something is in the way of the robot's arm.",
 };
 
+/** Of robots that drive, who see with their lasers. */
+const SENTENCES_OF_BASES: Readonly<Record<string, () => string>> = {
+  blocked: () => "The robot does not get on: something is in its way.",
+  door_closed: () => "The robot stands before a door that is shut.",
+};
+
 /** One sentence about the fault; a kind that the console does not know gets a general one. */
 export function faultInWords(about: About): string {
-  const sentence = SENTENCES[about.issue];
+  const ofBases = about.detection?.camera === "laser" ? SENTENCES_OF_BASES[about.issue] : undefined;
+  const sentence = ofBases ?? SENTENCES[about.issue];
   if (sentence !== undefined) return sentence(spoken(about.object ?? about.name));
   return `The robot could not go on with “${spoken(about.name)}” (${spoken(about.issue)}).`;
 }

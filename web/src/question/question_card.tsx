@@ -6,6 +6,7 @@ import { type Answer, answer } from "./answering";
 import { Answers } from "./answers";
 import { useAnswerKeys } from "./answer_keys";
 import { useArming } from "./arming";
+import { AskingPlace } from "./asking_place";
 import { ClaimStrip } from "./claim_strip";
 import { actOn, release } from "./claiming";
 import { Countdown } from "./countdown";
@@ -55,6 +56,7 @@ export function QuestionCard({ question, besideTree = false }: QuestionCardProps
       <div class="question-body">
         <div class="question-seen" onPointerDown={act} onKeyDown={act}>
           <FaultPicture question={question} />
+          <AskingPlace question={question} />
         </div>
         <div class="question-answers" onPointerMove={act} onPointerDown={act} onFocusCapture={act}>
           <Answers question={question} arming={arming} onAnswer={give} />

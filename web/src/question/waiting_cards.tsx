@@ -2,6 +2,7 @@
 import { helperName } from "../state/preferences";
 import { type Question, stopHelping, type Together } from "../state/questions";
 import type { Help } from "../wire/types";
+import { AskingPlace } from "./asking_place";
 import { robotName, spoken } from "./fault_words";
 import { PausedNode } from "./paused_node";
 import "./waiting_cards.css";
@@ -22,6 +23,12 @@ const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
   clear_view: () => "The robot watches until its head camera sees the table.",
 };
 
+/** A base sees with its laser, and has no arm. */
+function expected({ detection }: Question, help: Help, part: string): string {
+  if (help === "clear_way" && detection?.camera === "laser") return "The robot watches until its way is free.";
+  return EXPECTED[help](part);
+}
+
 interface AwaitedHelpProps {
   question: Question;
   /** Beside the run's own drawing of the tree, which shows the paused node already. */
@@ -41,9 +48,10 @@ export function AwaitedHelpCard({ question, besideTree = false }: AwaitedHelpPro
       {help !== null && (
         <p>
           {help.helper === helperName.value ? "You said you" : `${help.helper} said they`}{" "}
-          {PROMISES[help.help](part)}. {EXPECTED[help.help](part)}
+          {PROMISES[help.help](part)}. {expected(question, help.help, part)}
         </p>
       )}
+      <AskingPlace question={question} />
       <p class="watching quiet small">It goes on by itself as soon as it sees that. There is nothing to press.</p>
       {!besideTree && <PausedNode run={question.run} node={question.node} name={question.name} />}
     </article>

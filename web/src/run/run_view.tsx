@@ -2,6 +2,7 @@
 import { useComputed } from "@preact/signals";
 import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
 import { later } from "../app/later";
+import { planOf } from "../building/plan";
 import { RunQuestion } from "../question/run_question";
 import { awaitingHelp, questions, together } from "../state/questions";
 import { TreeDrawing } from "../tree/tree_drawing";
@@ -25,6 +26,11 @@ import { Transcript } from "./transcript";
 import "./run.css";
 
 const ScenePanel = later(() => import("./scene/scene_panel").then((module) => module.ScenePanel));
+
+const PlanPanel = later(() => import("../building/plan_panel").then((module) => module.PlanPanel));
+
+/** The world whose robots have no cameras. */
+const BLIND_WORLD = "building";
 
 const LANE_STEP_S = 0.5;
 
@@ -142,12 +148,19 @@ function Shown({ feed, version, state, latest }: ShownProps) {
     () => <TimelinePanel feed={feed} version={version} onSelect={setSelected} onGoTo={goToEvent} />,
     [feed, version, goToEvent],
   );
+  const { scene } = state.started;
+  const plan = useMemo(() => planOf(scene), [scene]);
   const world = useMemo(
-    () => <ScenePanel run={state.started.run} moment={moment} doers={doersOf(state)} />,
-    [state.started.run, moment, state.people],
+    () =>
+      plan === null ? (
+        <ScenePanel run={state.started.run} moment={moment} doers={doersOf(state)} />
+      ) : (
+        <PlanPanel plan={plan} run={state.started.run} moment={moment} state={state} />
+      ),
+    [plan, state.started.run, moment, plan === null ? state.people : state],
   );
   const cameras = useMemo(
-    () => <Cameras run={state.started.run} moment={moment} status={latest.status} />,
+    () => state.started.world !== BLIND_WORLD && <Cameras run={state.started.run} moment={moment} status={latest.status} />,
     [state.started.run, moment, latest.status],
   );
   const transcript = (
@@ -157,7 +170,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
     </section>
   );
   return (
-    <div class={`run-view ${newest ? "" : "in-past"}`}>
+    <div class={`run-view ${newest ? "" : "in-past"} ${plan === null ? "" : "in-building"}`}>
       <RunHeader newest={latest} moment={moment} />
       {narrow ? (
         <>
@@ -165,7 +178,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
           <Tabs
             panels={[
               { id: "tree", name: "Tree", content: [tree, choice] },
-              { id: "world", name: "Scene", content: [world, cameras] },
+              { id: "world", name: plan === null ? "Scene" : "Building", content: [world, cameras] },
               { id: "timeline", name: "Timeline", content: timeline },
               { id: "transcript", name: "Transcript", content: transcript },
             ]}

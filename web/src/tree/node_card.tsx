@@ -2,7 +2,7 @@
 import type { PlacedNode } from "./layout";
 import { KindSign, StateSign } from "./signs";
 import type { NodeKind, TreeNode } from "./tree_node";
-import { KIND_RULES, KIND_WORDS, plain, shortened, stateWord } from "./words";
+import { KIND_RULES, KIND_WORDS, plain, shortened, stateWord, withoutRun } from "./words";
 
 const NAME_PX = 7.6;
 const SMALL_PX = 6.6;
@@ -88,7 +88,7 @@ function LeafText({ node, width, compact }: { node: TreeNode; width: number; com
 }
 
 function asideOf(node: TreeNode): string | null {
-  if (node.owner !== null) return shortened(node.owner, 12);
+  if (node.owner !== null) return shortened(withoutRun(node.owner), 12);
   return node.attempts > 0 ? `${node.attempts} failed` : null;
 }
 

@@ -41,6 +41,11 @@ export function plain(name: string): string {
   return name.replaceAll("_", " ");
 }
 
+/** A robot's name within its run, whose number those of simulated worlds end with. */
+export function withoutRun(robot: string): string {
+  return robot.replace(/-[0-9a-f]{8}$/, "");
+}
+
 /** What is left of a text where only so many characters have room. */
 export function shortened(text: string, characters: number): string {
   if (text.length <= characters) return text;

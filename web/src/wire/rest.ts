@@ -8,6 +8,7 @@ import type {
   Problem as ProblemDocument,
   RobotView,
   RunRequest,
+  RunStarted,
   RunStatus,
   RunSummary,
   RunView,
@@ -126,6 +127,12 @@ export async function events(id: string, after = 0): Promise<Told[]> {
     if (last === undefined) return all;
     after = last.seq;
   }
+}
+
+/** How a run began; null where it has no events. */
+export async function beginning(id: string): Promise<RunStarted | null> {
+  const [first] = await call<Told[]>("GET", `/api/runs/${segment(id)}/events?limit=1`);
+  return first?.type === "run_started" ? first : null;
 }
 
 export const dialogue = (id: string) =>

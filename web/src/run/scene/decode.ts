@@ -10,7 +10,15 @@ export interface ShownObject {
   readonly hidden: boolean;
 }
 
-/** Where everything is at one moment of a run; poses but the base's are in the robot's base frame. */
+/** Where a robot's base frame is in the scene's. */
+export interface ShownBase {
+  /** z is the height of its floor. */
+  readonly pose: PoseValues;
+  /** How old that is, in seconds of the run's clock; infinite where it has not been said. */
+  readonly age: number;
+}
+
+/** Where everything is at one moment of a run; poses but those of bases are in the robot's base frame. */
 export interface Frame {
   /** Seconds of the run's clock. */
   readonly time: number;
@@ -23,11 +31,14 @@ export interface Frame {
   readonly opening: number;
   /** In the order of the layout's objects. */
   readonly objects: readonly ShownObject[];
+  /** In the order of the layout's robots. */
+  readonly robots: readonly ShownBase[];
 }
 
 const HEAD_BYTES = 16;
 const FIXED_BYTES = 76;
 const OBJECT_BYTES = 32;
+const ROBOT_BYTES = 32;
 const LENGTH_BYTES = 4;
 const POSE_VALUES = 7;
 const HELD = 1;
@@ -41,9 +52,10 @@ export function decodeFrame(bytes: ArrayBuffer, start = 0, length = bytes.byteLe
   const jointCount = view.getUint16(12, true);
   const objectCount = view.getUint16(14, true);
   const expected = FIXED_BYTES + 4 * jointCount + OBJECT_BYTES * objectCount;
-  if (length !== expected) {
+  const robotCount = (length - expected) / ROBOT_BYTES;
+  if (robotCount < 0 || !Number.isInteger(robotCount)) {
     throw new RangeError(
-      `a frame of ${jointCount} joints and ${objectCount} objects has ${expected} bytes, not ${length}`,
+      `a frame of ${jointCount} joints and ${objectCount} objects has ${expected} bytes and 32 a robot, not ${length}`,
     );
   }
   const base = HEAD_BYTES + 4 * jointCount;
@@ -56,6 +68,7 @@ export function decodeFrame(bytes: ArrayBuffer, start = 0, length = bytes.byteLe
     tool: floats(view, base + 4 * POSE_VALUES, POSE_VALUES),
     opening: view.getFloat32(base + 8 * POSE_VALUES, true),
     objects: Array.from({ length: objectCount }, (_, index) => object(view, objects + OBJECT_BYTES * index)),
+    robots: Array.from({ length: robotCount }, (_, index) => robot(view, expected + ROBOT_BYTES * index)),
   };
 }
 
@@ -82,6 +95,10 @@ function object(view: DataView, at: number): ShownObject {
     gone: (flags & GONE) !== 0,
     hidden: (flags & HIDDEN) !== 0,
   };
+}
+
+function robot(view: DataView, at: number): ShownBase {
+  return { pose: floats(view, at, POSE_VALUES), age: view.getFloat32(at + 4 * POSE_VALUES, true) };
 }
 
 // A Float32Array over the bytes themselves would need a little-endian machine and aligned frames.

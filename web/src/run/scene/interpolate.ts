@@ -1,6 +1,6 @@
 // What lies between two frames, and when to show it: a little behind what has come, so that there
 // nearly always is a frame on both sides.
-import type { Frame, PoseValues, ShownObject } from "./decode";
+import type { Frame, PoseValues, ShownBase, ShownObject } from "./decode";
 
 export const DELAY_MS = 100;
 
@@ -12,6 +12,10 @@ const MOST_WAITING = 64;
 // More than this from one frame to the next is somebody's hand or another world, not a motion.
 const JUMP_M = 0.15;
 const JUMP_RAD = 0.8;
+// Robots that drive go so far between two frames at the most, where the clock is fast.
+const DRIVE_JUMP_M = 5;
+// Where nothing came for longer a robot may have gone anywhere in between.
+const DRIVE_GAP_S = 2;
 
 interface Stamped {
   readonly at: number;
@@ -77,11 +81,22 @@ export function between(from: Frame, to: Frame, share: number): Frame {
     tool: mixPoses(from.tool, to.tool, part),
     opening: mix(from.opening, to.opening, part),
     objects: from.objects.map((each, index) => mixObjects(each, to.objects[index] as ShownObject, part)),
+    robots: from.robots.map((each, index) => mixRobots(each, to.robots[index] as ShownBase, part, to.time - from.time)),
   };
 }
 
 function alike(from: Frame, to: Frame): boolean {
-  return from.joints.length === to.joints.length && from.objects.length === to.objects.length;
+  return (
+    from.joints.length === to.joints.length &&
+    from.objects.length === to.objects.length &&
+    from.robots.length === to.robots.length
+  );
+}
+
+function mixRobots(from: ShownBase, to: ShownBase, share: number, gap: number): ShownBase {
+  if (from.age === Infinity || to.age === Infinity) return from;
+  if (gap > DRIVE_GAP_S) return { pose: from.pose, age: from.age + share * gap };
+  return { pose: mixPoses(from.pose, to.pose, share, DRIVE_JUMP_M), age: mix(from.age, to.age, share) };
 }
 
 function mixObjects(from: ShownObject, to: ShownObject, share: number): ShownObject {
@@ -97,10 +112,10 @@ function mixJoints(from: Float32Array, to: Float32Array, share: number): Float32
   });
 }
 
-function mixPoses(from: PoseValues, to: PoseValues, share: number): PoseValues {
+function mixPoses(from: PoseValues, to: PoseValues, share: number, jump = JUMP_M): PoseValues {
   const [x0, y0, z0] = from as unknown as [number, number, number];
   const [x1, y1, z1] = to as unknown as [number, number, number];
-  if (Math.hypot(x1 - x0, y1 - y0, z1 - z0) > JUMP_M) return from;
+  if (Math.hypot(x1 - x0, y1 - y0, z1 - z0) > jump) return from;
   const turned = slerp(from.subarray(3), to.subarray(3), share);
   return Float32Array.of(mix(x0, x1, share), mix(y0, y1, share), mix(z0, z1, share), ...turned);
 }

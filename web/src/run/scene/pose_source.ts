@@ -27,6 +27,10 @@ export interface PoseSource extends Poses {
   readonly nothing: ReadonlySignal<boolean>;
   /** As the layout's objects; set only when it differs from before. */
   readonly whereabouts: ReadonlySignal<readonly Whereabouts[]>;
+  /** What is known of the moment itself, never a stand-in for it; null for nothing. */
+  known(now: number): Frame | null;
+  /** When the newest frame came (milliseconds of this page); the first of a connection may be old, and says nothing. */
+  heard(): number | null;
   /** Hear that there is something new to show. */
   onChange(listener: () => void): void;
   close(): void;
@@ -40,6 +44,9 @@ export function createPoseSource(run: string, helper: string, moment: Moment): P
   const buffer = createPoseBuffer();
   let newest: Frame | null = null;
   let past: Frame | null = null;
+  let recordedThen: Frame | null = null;
+  let first = true;
+  let heard: number | null = null;
   let wanted = 0;
   let changed = () => {};
 
@@ -59,12 +66,15 @@ export function createPoseSource(run: string, helper: string, moment: Moment): P
     layout: takeLayout,
     frame(frame) {
       newest = frame;
+      if (!first) heard = performance.now();
+      first = false;
       buffer.push(frame, performance.now());
       if (frame.time > moment.end.peek() + REACH_STEP_S) moment.reach(frame.time);
       if (moment.live.peek()) tell(frame);
     },
     state(next) {
       state.value = next;
+      if (next === "connecting" || next === "watching" || next === "lost") first = true;
       if (next === "lost") buffer.clear();
       if (next === "ended" && newest !== null) moment.reach(newest.time);
     },
@@ -79,7 +89,7 @@ export function createPoseSource(run: string, helper: string, moment: Moment): P
   );
   const stopReplaying = effect(() => {
     if (moment.live.value) {
-      past = null;
+      past = recordedThen = null;
       nothing.value = false;
       if (newest !== null) tell(newest);
       return;
@@ -91,11 +101,14 @@ export function createPoseSource(run: string, helper: string, moment: Moment): P
     wanted += 1;
     const mine = wanted;
     // The newest known is a good stand-in where the record cannot be read.
-    const frame = await recorded.at(time).catch(() => past ?? newest);
+    const found = await recorded.at(time).catch(() => undefined);
     if (mine !== wanted || moment.live.peek()) return;
+    recordedThen = found ?? null;
+    const frame = found === undefined ? (past ?? newest) : found;
     past = frame;
     nothing.value = frame === null;
     if (frame !== null) tell(frame);
+    else changed();
   }
 
   return {
@@ -104,6 +117,8 @@ export function createPoseSource(run: string, helper: string, moment: Moment): P
     nothing,
     whereabouts,
     at: (now) => (moment.live.peek() ? (buffer.at(now) ?? newest) : (past ?? newest)),
+    known: (now) => (moment.live.peek() ? (buffer.at(now) ?? newest) : recordedThen),
+    heard: () => heard,
     moving: (now) => moment.live.peek() && buffer.moving(now),
     onChange(listener) {
       changed = listener;

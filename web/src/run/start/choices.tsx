@@ -1,4 +1,5 @@
 // The choices that say what they mean: in which world, and who answers.
+import { later } from "../../app/later";
 import { plain } from "../../tree/words";
 import type { SiteView } from "../../wire/types";
 import { siteName } from "../run_words";
@@ -7,6 +8,8 @@ import { type Choices, type Filled, isLive } from "./filled";
 import { LiveRobots } from "./live_robots";
 import type { StartMistakes } from "./start_mistakes";
 
+const SitePlan = later(() => import("../../building/site_plan").then((module) => module.SitePlan));
+
 interface PartProps {
   filled: Filled;
   fill: (change: Partial<Filled>) => void;
@@ -14,6 +17,7 @@ interface PartProps {
 }
 
 export function WorldChoice({ choices, filled, fill, mistakes }: PartProps & { choices: Choices }) {
+  const site = choices.sites.find(({ id }) => id === filled.site);
   return (
     <fieldset class="panel" aria-describedby="start-world-mistake">
       <legend>Where</legend>
@@ -38,6 +42,7 @@ export function WorldChoice({ choices, filled, fill, mistakes }: PartProps & { c
         ))}
       </div>
       <Mistake field="world" mistakes={mistakes} />
+      {site?.world === "building" && <SitePlan scene={site.scene} />}
       {isLive(filled) && <LiveRobots known={choices.robots} filled={filled} fill={fill} />}
       <Mistake field="robots" mistakes={mistakes} />
     </fieldset>

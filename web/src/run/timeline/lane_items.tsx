@@ -53,7 +53,7 @@ export function LaneItems({ lane, scale, height, walk, onChoose }: LaneItemsProp
           >
             <title>{`${clock(item.start)}: ${item.title}`}</title>
             {lane.kind === "steps" || lane.kind === "dialogues" ? (
-              <Bar item={item} left={left} right={right} height={height} scale={scale} />
+              <Bar item={item} left={left} right={right} room={room} height={height} scale={scale} />
             ) : (
               <Mark item={item} x={left} height={height} room={room} />
             )}
@@ -79,13 +79,15 @@ interface BarProps {
   item: TimelineItem;
   left: number;
   right: number;
+  /** Until the next one begins, which may be before this one ends. */
+  room: number;
   height: number;
   scale: Scale;
 }
 
-function Bar({ item, left, right, height, scale }: BarProps) {
+function Bar({ item, left, right, room, height, scale }: BarProps) {
   const width = Math.max(right - left, 3);
-  const characters = Math.floor((width - 10) / CHARACTER_PX);
+  const characters = Math.floor((Math.min(width, room) - 10) / CHARACTER_PX);
   const steps = width / Math.max(item.parts.length, 1) >= STEP_PX ? item.parts : [];
   return (
     <>

@@ -1,6 +1,7 @@
 // The lanes of a timeline as a drawing over the run's clock.
 import { useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { Moment } from "../moment";
+import { shortened, withoutRun } from "../../tree/words";
 import { clock } from "../run_words";
 import { LaneItems } from "./lane_items";
 import { type Lane, ticksOf, type TimelineItem } from "./lanes";
@@ -9,6 +10,7 @@ import { type Scale, scaleOf, type Span } from "./span";
 import { useWalk } from "./walk";
 
 const LABELS_PX = 96;
+const NAME_CHARACTERS = 12;
 const NARROW_PX = 560;
 const LANE_PX = 32;
 const LANE_NARROW_PX = 44;
@@ -51,7 +53,7 @@ export function Lanes(props: LanesProps) {
           <g key={lane.name} role="group" aria-label={lane.name} transform={`translate(0 ${AXIS_PX + index * lanePx})`}>
             <line class="lane-line" x1={0} x2={width} y1={0} y2={0} />
             <text class="lane-name" x={narrow ? 4 : 0} y={narrow ? 13 : lanePx / 2 + 5}>
-              {lane.name}
+              {shortened(withoutRun(lane.name), NAME_CHARACTERS)}
             </text>
             <g transform={`translate(0 ${narrow ? 14 : 0})`}>
               <LaneItems lane={lane} scale={scale} height={lanePx - (narrow ? 14 : 0)} walk={walk} onChoose={onChoose} />

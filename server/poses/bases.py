@@ -1,0 +1,60 @@
+"""Where the robots of a run are that drive, in the scene's frame."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from mend.robots.link.messages import IDENTITY, PoseValues
+from mend.tasks.frames import Frame
+
+
+@dataclass(frozen=True, slots=True)
+class SeenBase:
+    """A robot's base frame in the scene's, and how old that is.
+
+    `age_s`: of the run's clock; inf of a robot that has not shown where it is.
+    """
+
+    pose: PoseValues
+    age_s: float
+
+
+NEVER_SEEN = SeenBase(IDENTITY, math.inf)
+
+
+class Bases:
+    """The newest base of each robot; `frames` are those in which robots tell theirs."""
+
+    def __init__(self, frames: Mapping[str, Frame]) -> None:
+        self._frames = frames
+        self._seen: dict[str, tuple[float, PoseValues]] = {}
+
+    def take(self, robot: str, time_s: float, base: PoseValues) -> None:
+        """What a robot of the run has told; `time_s` is of the run's clock."""
+        self._seen[robot] = time_s, in_scene(self._frames[robot], base)
+
+    def of(self, robot: str) -> PoseValues | None:
+        """The newest one of a robot."""
+        return self._seen[robot][1] if robot in self._seen else None
+
+    def at(self, time_s: float, robots: Sequence[str]) -> list[SeenBase]:
+        """Those of some robots, as they are known at a time."""
+        seen = [self._seen.get(each) for each in robots]
+        return [
+            NEVER_SEEN if each is None else SeenBase(each[1], max(0.0, time_s - each[0]))
+            for each in seen
+        ]
+
+
+def in_scene(frame: Frame, pose: PoseValues) -> PoseValues:
+    """A pose of a robot's frame in the scene's; heights are the same in both."""
+    x, y, z, qx, qy, qz, qw = pose
+    sine, cosine = math.sin(frame.yaw / 2), math.cos(frame.yaw / 2)
+    return (
+        *frame.to_scene(x, y),
+        z,
+        cosine * qx - sine * qy,
+        cosine * qy + sine * qx,
+        cosine * qz + sine * qw,
+        cosine * qw - sine * qz,
+    )
