@@ -18,6 +18,8 @@ const SENTENCES: Readonly<Record<string, (part: string) => string>> = {
 const SENTENCES_OF_BASES: Readonly<Record<string, () => string>> = {
   blocked: () => "The robot does not get on: something is in its way.",
   door_closed: () => "The robot stands before a door that is shut.",
+  elevator_help: () => "The robot needs somebody for an elevator.",
+  wrong_floor: () => "The robot is in an elevator that has opened at a wrong floor.",
 };
 
 /** One sentence about the fault; a kind that the console does not know gets a general one. */
