@@ -6,10 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from mend.robots.base.body import BaseBody, BasePose
+from mend.robots.base.jumps import Jumps
 from mend.robots.base.motion.surroundings import Seen, Surroundings
 from mend.robots.base.motion.warming_up import warm_up
 from mend.robots.base.motion.way_follower import WayFollower
 from mend.robots.base.ways import Ways
+from mend.robots.base.whereabouts import AlwaysKnown, Whereabouts
 from mend.robots.execution.effector import Effector
 
 _SLOW_M_S, _SLOW_RAD_S = 0.05, 0.1
@@ -28,14 +30,16 @@ class Barrier:
 class Base(Effector[BaseBody]):
     """A base; it is at rest wherever it stands."""
 
-    def __init__(self, body: BaseBody, ways: Ways) -> None:
-        """`ways` says which points to pass to a goal."""
+    def __init__(self, body: BaseBody, ways: Ways, whereabouts: Whereabouts | None = None) -> None:
+        """`ways` says which points to pass to a goal, `whereabouts` if it may be lost."""
         warm_up()
         super().__init__(body)
         self.ways = ways
+        self.whereabouts: Whereabouts = whereabouts or AlwaysKnown()
         self.at_rest = True
         self._speed = 1.0
         self._surroundings = Surroundings()
+        self._jumps = Jumps()
         self._following: WayFollower | None = None
 
     def start(self, to: BasePose, speed: float) -> None:
@@ -43,11 +47,21 @@ class Base(Effector[BaseBody]):
         self._following, self._speed = self._follower(to), speed
         self.at_rest = False
 
+    def jumps(self) -> bool:
+        """Whether it now believes to be elsewhere than where its way led it; once a cycle."""
+        return self._jumps.note(self.body.pose(), self.body.odometry())
+
     def drive_on(self) -> None:
-        """Choose how to move in the next control cycle; once a cycle, after `start`."""
+        """Choose how to move in the next control cycle; once a cycle, after `start`.
+
+        Who is lost stands still until it knows where it is.
+        """
         assert self._following is not None, "it was started"
         here, now = self.body.pose(), self.body.velocity()
         seen = self._look_around(here)
+        if self.whereabouts.is_lost:
+            self.body.stop()
+            return
         self.body.move(self._following.choose(here, now, seen, self.pace))
 
     def stop(self) -> None:
@@ -81,7 +95,7 @@ class Base(Effector[BaseBody]):
         following, here = self._following, self.body.pose()
         if following is None or not following.barred:
             return None
-        points = self._surroundings.seen.points
+        points = self._surroundings.seen.in_frame_of(self.body.odometry()).seen_from(here).points
         met = following.first_met(points)
         if met is None:
             nearest_m = np.hypot(points[:, 0] - here.x, points[:, 1] - here.y).min(initial=math.inf)
@@ -107,4 +121,11 @@ class Base(Effector[BaseBody]):
         return WayFollower(body.limits, body.radius_m, body.control_period_s, way, to)
 
     def _look_around(self, here: BasePose) -> Seen:
-        return self._surroundings.take(self.body.scan(), here, self.body.time_s())
+        """What is seen and remembered, in the frame of `here`.
+
+        It is remembered by the wheels, which never jump: what the base believes of where it is
+        moves nothing that it sees around it.
+        """
+        wheels = self.body.odometry()
+        seen = self._surroundings.take(self.body.scan(), wheels, self.body.time_s())
+        return seen.in_frame_of(wheels).seen_from(here)

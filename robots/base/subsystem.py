@@ -10,6 +10,7 @@ from mend.robots.base.body import BaseBody, BasePose
 from mend.robots.base.looks import answer, look_as_told
 from mend.robots.base.monitors.monitor import BaseView
 from mend.robots.base.ways import StraightWays, Ways
+from mend.robots.base.whereabouts import Whereabouts
 from mend.robots.body import CameraImage
 from mend.robots.catalogue import Catalogue
 from mend.robots.execution.behavior import Behavior, of_kind, read_parameters
@@ -42,9 +43,13 @@ class BaseSubsystem:
         behaviors: Mapping[str, type[Behavior]],
         monitors: Mapping[str, type[AnyMonitor]],
         ways: Ways | None = None,
+        whereabouts: Whereabouts | None = None,
     ) -> None:
-        """It takes those of bases. Without `ways` it goes straight to each goal."""
-        self.effector = Base(body, ways or StraightWays())
+        """It takes those of bases. Without `ways` it goes straight to each goal.
+
+        Without `whereabouts` it always believes its body's pose.
+        """
+        self.effector = Base(body, ways or StraightWays(), whereabouts)
         self._places = {name: _pose(each) for name, each in catalogue.places.items()}
         self._behaviors = of_kind(behaviors, BaseBehavior)  # type: ignore[type-abstract]
         self._monitors = for_view(monitors.values(), BaseView)
@@ -63,7 +68,8 @@ class BaseSubsystem:
             target=self._target(getattr(parameters, "place", None), start.target),
         )
         drives = behavior.drives(parameters, situation)
-        self._check_ways(situation.here, drives)
+        if not self.effector.whereabouts.is_lost:
+            self._check_ways(situation.here, drives)
         return BaseExecution(
             start.execution,
             behavior.monitored_as,

@@ -1,12 +1,13 @@
 """Making buildings: the world with its robots, and what they can do in a scene."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mend.documents.problem import list_names
 from mend.errors import WrongInputError
+from mend.localization.methods import warm_up
 from mend.maps.building.building import Building
 from mend.maps.building.clearance import distances_m, lane_clearance_m
 from mend.robots.base.behaviors.behavior import BaseBehavior
@@ -17,8 +18,11 @@ from mend.robots.catalogue import Catalogue
 from mend.robots.execution.behavior import of_kind
 from mend.robots.execution.command_error import CommandError
 from mend.robots.robot import Robot
-from mend.sim.building.building_robot import LIMITS, RADIUS_M, FloorPose
-from mend.sim.building.options import BuildingOptions
+from mend.sim.building.belief import FloorMap, floor_maps
+from mend.sim.building.building_robot import LIMITS, RADIUS_M
+from mend.sim.building.floor_pose import FloorPose
+from mend.sim.building.furniture import Furniture, Room, kept_clear
+from mend.sim.building.options import BuildingOptions, LocalizerKind
 from mend.sim.building.setting import building_of, read_setting
 from mend.sim.building.world import BuildingWorld
 from mend.sim.shared_world import SharedWorld
@@ -33,6 +37,10 @@ from mend.tasks.scene_problem import SceneProblem
 if TYPE_CHECKING:
     from mend.robots.vision.color_model import ColorModel
 
+Point = tuple[float, float]
+
+FURNITURE_SPARE_M = 0.2
+"""Furniture leaves robots on their lanes so much on each side."""
 SPARE_M = 0.05
 """A robot is so much farther from walls than its rim at least."""
 
@@ -70,7 +78,16 @@ class Buildings:
             for frame, base in zip(frames.values(), _bases(setup.scene), strict=True)
         ]
         rng = np.random.default_rng(setup.seed)
-        world = BuildingWorld(building, starts, options.shut_doors, rng)
+        places = _places_by_floor(setup.scene, building)
+        stand = [at for _, at in starts]
+        world = BuildingWorld(
+            building,
+            starts,
+            options.shut_doors,
+            rng,
+            Furniture(_rooms(building, places, stand), options.unmapped, rng),
+            _maps(building, places, options.localizer),
+        )
         robots = [
             Robot(
                 name,
@@ -82,6 +99,7 @@ class Buildings:
                         load_plugins("mend.behaviors"),
                         load_plugins("mend.monitors"),
                         _ways(building, frame),
+                        body.whereabouts,
                     )
                 ],
             )
@@ -106,6 +124,37 @@ def _start(building: Building, base: Base) -> FloorPose:
     if floor is None:
         raise WrongInputError(f"no floor of '{building.name}' is {base.z:g} m high")
     return FloorPose(floor, base.x, base.y, base.yaw)
+
+
+def _places_by_floor(scene: Scene, building: Building) -> dict[str, dict[str, Point]]:
+    """Where a scene's places are, by floor and name."""
+    found: dict[str, dict[str, Point]] = {name: {} for name in building.floors}
+    for name, place in scene.places.items():
+        floor = building.floor_at(place.pose.z or 0.0)
+        if floor is not None:
+            found[floor][name] = (place.pose.x, place.pose.y)
+    return found
+
+
+def _rooms(
+    building: Building, places: Mapping[str, Mapping[str, Point]], stand: Sequence[FloorPose]
+) -> dict[str, Room]:
+    """Where furniture may be put: nowhere where robots begin, go, or pass."""
+    rooms = {}
+    for name, floor in building.floors.items():
+        begin = [(at.x, at.y) for at in stand if at.floor == name]
+        clear = kept_clear(floor, [*places[name].values(), *begin])
+        rooms[name] = Room(floor, clear, RADIUS_M + FURNITURE_SPARE_M)
+    return rooms
+
+
+def _maps(
+    building: Building, places: Mapping[str, Mapping[str, Point]], kind: LocalizerKind
+) -> Mapping[str, FloorMap] | None:
+    if kind is LocalizerKind.EXACT:
+        return None
+    warm_up(kind)
+    return floor_maps(building, places)
 
 
 def _beside_floors(scene: Scene, building: Building) -> list[SceneProblem]:

@@ -1,10 +1,18 @@
 """What a run may choose about a building."""
 
+from enum import StrEnum
 from typing import Annotated
 
 from pydantic import ConfigDict, Field
 
 from mend.documents.strict_model import StrictModel
+
+
+class LocalizerKind(StrEnum):
+    """How robots know where they are."""
+
+    ENML = "enml"
+    EXACT = "exact"
 
 
 class BuildingOptions(StrictModel):
@@ -14,3 +22,7 @@ class BuildingOptions(StrictModel):
 
     shut_doors: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.2
     """The share of the doors that people open that is shut at first, drawn by the seed."""
+    localizer: Annotated[LocalizerKind, Field(strict=False)] = LocalizerKind.ENML
+    """How robots know where they are: by laser and wheels, or exactly."""
+    unmapped: Annotated[float, Field(ge=0.0, le=0.5, strict=False)] = 0.2
+    """Of what lasers see, so much is furniture that is on no map, drawn by the seed."""

@@ -13,10 +13,16 @@ from mend.maps.building.building import Building, DoorOpening
 from mend.maps.building.clearance import distances_m
 from mend.robots.base.body import RangeScan
 from mend.sim.building import laser
-from mend.sim.building.building_robot import PERIOD_S, BuildingRobot, FloorPose, Senses
+from mend.sim.building.belief import Belief, BeliefSnapshot, FloorMap
+from mend.sim.building.building_robot import PERIOD_S, BuildingRobot, Senses
 from mend.sim.building.bystander import RADIUS_M as PERSON_RADIUS_M
 from mend.sim.building.bystander import Bystander
 from mend.sim.building.door import WorldDoor
+from mend.sim.building.draws import read_draws, written_draws
+from mend.sim.building.floor_pose import FloorPose
+from mend.sim.building.furniture import Furniture, Row
+from mend.sim.building.laser_noise import measured_m
+from mend.sim.building.odometry import Odometer, OdometerSnapshot
 from mend.tasks.frames import Frame
 from mend.tasks.intervention import Act, Intervention
 
@@ -26,6 +32,9 @@ _IN_FRONT_M = 0.6
 """So far from a robot's rim somebody stands who steps in its way."""
 _AT_DOOR_M = 1.0
 """Who is asked to open a door opens one that a robot stands so near to."""
+_FURNITURE_MOVES_EVERY_S = 60.0
+"""So often somebody puts a piece of furniture elsewhere, on each floor."""
+_FURNITURE_FROM_ROBOTS_M = 1.0
 _HELD_OPEN_S = 30.0
 """What people opened for a robot falls shut after so long, once nobody is there."""
 
@@ -37,6 +46,11 @@ class WorldSnapshot(StrictModel):
     robots: list[tuple[str, float, float, float]]
     doors: dict[str, tuple[bool, float | None]]
     bystanders: list[tuple[str, float, float]]
+    odometers: list[OdometerSnapshot]
+    beliefs: list[BeliefSnapshot | None]
+    furniture: dict[str, list[Row]]
+    furniture_moves_s: float
+    draws: str
 
 
 class BuildingWorld:
@@ -51,8 +65,13 @@ class BuildingWorld:
         starts: Iterable[tuple[Frame, FloorPose]],
         shut_doors: float,
         rng: np.random.Generator,
+        furniture: Furniture,
+        maps: Mapping[str, FloorMap] | None = None,
     ) -> None:
-        """`shut_doors`: the share of those that people open that is shut at first."""
+        """`shut_doors`: the share of those that people open that is shut at first.
+
+        Robots find their way by `maps`; without, they know where they are.
+        """
         self.building = building
         self.touches = 0
         self._time_s = 0.0
@@ -66,9 +85,23 @@ class BuildingWorld:
             for floor, each in building.floors.items()
             for name, plan in each.doors.items()
         }
+        self._rng = rng
+        self._furniture = furniture
+        self._furniture_moves_s = _FURNITURE_MOVES_EVERY_S
         self._scans: dict[BuildingRobot, RangeScan] = {}
         senses = Senses(self.time_s, self._height_m, self._scan, self.advance_cycle)
-        self.robots = [BuildingRobot(*start, senses) for start in starts]
+        self.robots = [self._robot(*start, senses, maps) for start in starts]
+
+    def _robot(
+        self,
+        frame: Frame,
+        at: FloorPose,
+        senses: Senses,
+        maps: Mapping[str, FloorMap] | None,
+    ) -> BuildingRobot:
+        odometer = Odometer(self._rng)
+        belief = None if maps is None else Belief(maps, at, odometer)
+        return BuildingRobot(frame, at, senses, odometer, belief)
 
     # --- Time ---
 
@@ -80,8 +113,19 @@ class BuildingWorld:
         for door in self._doors.values():
             floor = door.name.split("/", 1)[0]
             door.let_pass(self._time_s, [(x, y) for x, y, _ in self._circles(floor)])
+        self._move_furniture()
         for robot in self.robots:
             self._drive(robot)
+        for robot in self.robots:
+            self._scan(robot)
+
+    def _move_furniture(self) -> None:
+        if self._time_s < self._furniture_moves_s:
+            return
+        self._furniture_moves_s += _FURNITURE_MOVES_EVERY_S
+        for floor in self.building.floors:
+            stand = [(x, y) for x, y, _ in self._circles(floor)]
+            self._furniture.move_one(floor, stand, _FURNITURE_FROM_ROBOTS_M)
 
     def _drive(self, robot: BuildingRobot) -> None:
         wanted = robot.next_pose()
@@ -91,7 +135,7 @@ class BuildingWorld:
             self.touches += 1
             robot.bump()
         else:
-            robot.at = wanted
+            robot.drive_to(wanted)
 
     def _touches(self, at: FloorPose, radius_m: float, but: BuildingRobot | None = None) -> bool:
         """Whether something round would touch anything there."""
@@ -124,14 +168,18 @@ class BuildingWorld:
         ]
 
     def _segments(self, floor: str) -> NDArray[np.float64]:
-        """Walls and shut doors."""
+        """Walls, shut doors and furniture."""
         shut = [
             each.segment
             for each in self._doors.values()
             if each.is_shut and each.name.startswith(f"{floor}/")
         ]
         return np.vstack(
-            [self.building.floors[floor].wall_segments, np.array(shut, np.float64).reshape(-1, 4)]
+            [
+                self.building.floors[floor].wall_segments,
+                np.array(shut, np.float64).reshape(-1, 4),
+                self._furniture.segments(floor),
+            ]
         )
 
     def _scan(self, robot: BuildingRobot) -> RangeScan:
@@ -143,10 +191,20 @@ class BuildingWorld:
         ranges = laser.ranges_m(
             self._segments(at.floor), self._circles(at.floor, robot), at.x, at.y, at.yaw
         )
-        scan = self._scans[robot] = RangeScan(ranges, laser.ANGLES_RAD, self._time_s)
+        scan = RangeScan(measured_m(ranges, self._rng), laser.ANGLES_RAD, self._time_s)
+        self._scans[robot] = scan
+        if robot.belief is not None:
+            robot.belief.see(scan)
         return scan
 
     # --- People who act ---
+
+    def carry(self, robot: BuildingRobot, to: FloorPose) -> str:
+        """Somebody lifts a robot and puts it down elsewhere, which its wheels do not measure."""
+        if self._touches(to, robot.radius_m + _IN_FRONT_M / 2.0, robot):
+            return "there is no room to put the robot down"
+        robot.stand(to)
+        return ""
 
     def intervene(self, intervention: Intervention) -> str:
         """Somebody steps before the first robot that drives, or makes way and opens the door."""
@@ -202,6 +260,13 @@ class BuildingWorld:
             robots=[(e.at.floor, e.at.x, e.at.y, e.at.yaw) for e in self.robots],
             doors={name: (each.is_shut, each.shuts_s) for name, each in self._doors.items()},
             bystanders=[(e.at.floor, e.at.x, e.at.y) for e in self.bystanders],
+            odometers=[each.odometer.snapshot() for each in self.robots],
+            beliefs=[
+                None if each.belief is None else each.belief.snapshot() for each in self.robots
+            ],
+            furniture=self._furniture.rows(),
+            furniture_moves_s=self._furniture_moves_s,
+            draws=written_draws(self._rng),
         )
         return kept.model_dump(mode="json")
 
@@ -212,10 +277,17 @@ class BuildingWorld:
             raise ValueError(f"expected {len(self.robots)} robots, got {len(kept.robots)}")
         if kept.doors.keys() != self._doors.keys():
             raise ValueError("the snapshot has other doors than the building")
+        self._furniture.restore(kept.furniture)
+        self._furniture_moves_s = kept.furniture_moves_s
+        read_draws(self._rng, kept.draws)
         self._time_s = kept.time_s
         self._scans.clear()
-        for robot, at in zip(self.robots, kept.robots, strict=True):
+        known = zip(kept.robots, kept.odometers, kept.beliefs, strict=True)
+        for robot, (at, odometer, belief) in zip(self.robots, known, strict=True):
             robot.stand(FloorPose(*at))
+            robot.odometer.restore(odometer)
+            if robot.belief is not None and belief is not None:
+                robot.belief.restore(belief)
         for name, (is_shut, shuts_s) in kept.doors.items():
             self._doors[name].is_shut, self._doors[name].shuts_s = is_shut, shuts_s
         self.bystanders = [Bystander(FloorPose(*each)) for each in kept.bystanders]

@@ -32,6 +32,8 @@ class BuildingBench:
         robots: int = 1,
         shut_doors: float = 0.0,
         seed: int = 1,
+        localizer: str = "exact",
+        unmapped: float = 0.0,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
         setup = WorldSetup(
@@ -39,7 +41,7 @@ class BuildingBench:
             scene=self.scene,
             seed=seed,
             speed=None,
-            options={"shut_doors": shut_doors},
+            options={"shut_doors": shut_doors, "localizer": localizer, "unmapped": unmapped},
         )
         self.group: SharedWorld = BUILDINGS.create_agents(setup)
         self.world: BuildingWorld = self.group.world  # type: ignore[assignment]

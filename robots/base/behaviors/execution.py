@@ -56,8 +56,12 @@ class BaseExecution(Execution[BaseProgress]):
         progress = self._progress
         progress.step, progress.waits_since_s = BEFORE_FIRST_STEP, None
         self._watch.check()
+        yield from self._find_out()
         if self._driven == 0 and all(self._is_at(each.to) for each in progress.drives):
             return True
+        if self._driven == len(progress.drives) and not self._is_at(progress.drives[-1].to):
+            # It was elsewhere than it had thought.
+            self._driven -= 1
         progress.move_to(ExecutionState.RUNNING)
         for number in range(self._driven + 1, len(progress.drives) + 1):
             progress.step = number
@@ -68,7 +72,14 @@ class BaseExecution(Execution[BaseProgress]):
             self._driven = number
         progress.move_to(ExecutionState.CONFIRMING)
         self._watch.check()
+        yield from self._find_out()
         return False
+
+    def _find_out(self) -> Routine[None]:
+        """Stand while it does not know where it is: it cannot say that it is there."""
+        while self._base.whereabouts.is_lost:
+            self._watch.check_if_due()
+            yield
 
     def _take(self, drive: Drive) -> Routine[None]:
         """One drive, with waits wherever its way is barred. Raises `Interruption`."""
@@ -96,7 +107,13 @@ class BaseExecution(Execution[BaseProgress]):
     def _drive_on(self, drive: Drive, headway: Headway) -> None:
         """Drive while there is a way; stand still before what leaves none."""
         progress, base = self._progress, self._base
+        if base.jumps():
+            self._begin(drive)
+            if base.following is None:
+                return
         base.drive_on()
+        if base.whereabouts.is_lost:
+            return
         following = base.following
         assert following is not None, "it drives"
         if not following.barred:

@@ -46,6 +46,10 @@ class Seen:
         """As a base has it that is at a pose."""
         return Seen(in_frame_of(self.points, pose), self.speeds_m_s)
 
+    def seen_from(self, pose: BasePose) -> "Seen":
+        """What a base sees that is at a pose, in the frame that the pose is in."""
+        return Seen(out_of_frame_of(self.points, pose), self.speeds_m_s)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Placed:
@@ -159,6 +163,13 @@ def points_of(scan: RangeScan, at: BasePose) -> Points:
     seen = np.isfinite(scan.ranges_m)
     ranges_m, bearings = scan.ranges_m[seen], scan.angles_rad[seen] + at.yaw
     return np.column_stack([at.x + ranges_m * np.cos(bearings), at.y + ranges_m * np.sin(bearings)])
+
+
+def out_of_frame_of(points: Points, pose: BasePose) -> Points:
+    """Points (n, 2) that a base has that is at a pose, in the frame that the pose is in."""
+    cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
+    x, y = points[:, 0], points[:, 1]
+    return np.column_stack([pose.x + cos * x - sin * y, pose.y + sin * x + cos * y])
 
 
 def in_frame_of(points: Points, pose: BasePose) -> Points:
