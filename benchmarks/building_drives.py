@@ -39,7 +39,6 @@ from mend.robots.link.messages import (
     Rejected,
     Resume,
 )
-from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.scene import scene_of
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.scene import Scene
@@ -66,9 +65,10 @@ class Drives:
             seed=seed,
             localizer=options.localizer,
             unmapped=options.unmapped,
+            carried_every_s=options.carried_every,
         )
         self._rng = np.random.default_rng([seed, 1])
-        self._carried_every_s, self._lies = options.carried_every, options.lies
+        self._lies = options.lies
         self._held: dict[str, str] = {}
         self._asked_s: dict[str, float] = {}
         self._guesses: dict[str, list[str]] = {}
@@ -85,7 +85,6 @@ class Drives:
     def run(self, seconds: float) -> None:
         """Let so much of the world's time pass."""
         group, steps_in_s = self._bench.group, STEPS_IN_EVERY_S
-        carried_s = self._carried_every_s or math.inf
         for robot in self._bench.scene.robots:
             self._send_on(robot)
         while group.time_s() < seconds:
@@ -94,12 +93,10 @@ class Drives:
                 steps_in_s += self._rng.uniform(0.5, 1.5) * STEPS_IN_EVERY_S
                 if self._bench.world.intervene(Intervention(act=Act.BLOCK)) == "":
                     self.counts["steps in the way"] += 1
-            if group.time_s() >= carried_s:
-                carried_s += self._rng.uniform(0.5, 1.5) * self._carried_every_s
-                self._carry_one()
             self._judge()
             self._hear()
             self._answer()
+        self.counts["carried"] = self._bench.world.carried
 
     def _send_on(self, robot: str) -> None:
         """To a place of the floor on which the robot is."""
@@ -108,20 +105,6 @@ class Drives:
         goals = sorted(n for n, each in places.items() if abs((each.pose.z or 0.0) - here) < 0.5)
         self.counts["drives"] += 1
         self._bench.go(robot, goals[int(self._rng.integers(len(goals)))])
-
-    def _carry_one(self) -> None:
-        """To some place of the floor, as far from it as may be."""
-        moving = [each for each in self._bench.world.robots if each.moving]
-        if not moving:
-            return
-        robot = moving[int(self._rng.integers(len(moving)))]
-        places = list(self._bench.world.building.floors[robot.at.floor].places.values())
-        self._rng.shuffle(places)  # type: ignore[arg-type]
-        for place in places:
-            there = FloorPose(robot.at.floor, place.x, place.y, self._rng.uniform(-3.1, 3.1))
-            if self._bench.world.carry(robot, there) == "":
-                self.counts["carried"] += 1
-                return
 
     def _judge(self) -> None:
         """How far off they are from the truth that say that they know where they are."""

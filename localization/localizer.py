@@ -69,6 +69,10 @@ class SearchingLocalizer(Localizer, Protocol):
         """Where the robot may be by what it has seen since it was lost, the likeliest first."""
         ...
 
+    def get_lost(self) -> None:
+        """Where the robot is believed to be is believed no more, until a search finds a place."""
+        ...
+
     def take(self, place: Poses) -> None:
         """The robot is at one of the open places: believed from now on, as far as it fits."""
         ...

@@ -117,6 +117,11 @@ class EnmlLocalizer:
             return []
         return [each.pose for each in self._recovery.open_places(self._episode)]
 
+    def get_lost(self) -> None:
+        """Where the robot is believed to be is believed no more, until a search finds a place."""
+        self._may_be_anywhere = True
+        self._lose()
+
     def take(self, place: Poses) -> None:
         """The robot is at one of the open places: on probation, as what was found by a search."""
         self._move(self._recovery.weighed(self._episode, np.asarray(place)), proven=False)

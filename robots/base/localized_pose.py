@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from mend.localization.localizer import SearchingLocalizer
-from mend.localization.pose import Poses, relative
+from mend.localization.pose import Poses, compose, relative, wrap_angle
 from mend.localization.scan import Scan
 from mend.robots.base.body import RangeScan
 from mend.robots.link.messages import MOST_GUESSES
@@ -18,6 +18,8 @@ _EVERY_M, _EVERY_RAD = 0.3, 0.3
 """A scan is taken after so much has been driven or turned since the last; wheels do for less."""
 _EVERY_S = 2.0
 """One that stands takes one so often; who is lost takes every one."""
+_JUMPS_M, _JUMPS_RAD = 1.0, 1.0
+"""No estimate is corrected by so much at once that was right before."""
 _BEAM_RAD = math.radians(2.0)
 """Of denser beams some are enough, for less time."""
 _SEARCHES_AFTER_S = 0.5
@@ -114,16 +116,27 @@ class LocalizedPose:
 
     def _update(self, moved: Poses, odometry: Poses) -> None:
         assert self._newest is not None, "there was a scan"
+        expected = compose(self._at, moved)
         estimate = self._localizer.update(moved, self._newest)
-        self._at, self._from = estimate.pose.copy(), np.array(odometry, np.float64)
+        is_lost, at = estimate.is_lost, estimate.pose.copy()
+        if not (is_lost or self.is_lost) and _is_elsewhere(expected, at):
+            # It has only found a place that it likes better: neither is sure.
+            self._localizer.get_lost()
+            is_lost, at = True, expected
+        self._at, self._from = at, np.array(odometry, np.float64)
         self._updated_s = self._time_s
-        if estimate.is_lost and not self.is_lost:
+        if is_lost and not self.is_lost:
             self._get_lost()
-        self.is_lost = estimate.is_lost
+        self.is_lost = is_lost
 
     def _get_lost(self) -> None:
         self._lost_since_s = self._time_s
         self._searches_s = self._time_s + _SEARCHES_AFTER_S
+
+
+def _is_elsewhere(a: Poses, b: Poses) -> bool:
+    apart_m = math.hypot(a[0] - b[0], a[1] - b[1])
+    return apart_m > _JUMPS_M or abs(wrap_angle(float(a[2] - b[2]))) > _JUMPS_RAD
 
 
 def _carried_on(at: Poses, was: Poses, odometry: Poses) -> Poses:

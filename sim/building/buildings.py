@@ -20,6 +20,7 @@ from mend.robots.execution.command_error import CommandError
 from mend.robots.robot import Robot
 from mend.sim.building.belief import FloorMap, floor_maps
 from mend.sim.building.building_robot import LIMITS, RADIUS_M
+from mend.sim.building.carrying import Carrying
 from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.furniture import Furniture, Room, kept_clear
 from mend.sim.building.options import BuildingOptions, LocalizerKind
@@ -86,6 +87,7 @@ class Buildings:
             options.shut_doors,
             rng,
             Furniture(_rooms(building, places, stand), options.unmapped, rng),
+            Carrying(options.carried_every_s, rng),
             _maps(building, places, options.localizer),
         )
         robots = [

@@ -17,6 +17,7 @@ from mend.sim.building.belief import Belief, BeliefSnapshot, FloorMap
 from mend.sim.building.building_robot import PERIOD_S, BuildingRobot, Senses
 from mend.sim.building.bystander import RADIUS_M as PERSON_RADIUS_M
 from mend.sim.building.bystander import Bystander
+from mend.sim.building.carrying import Carrying
 from mend.sim.building.door import WorldDoor
 from mend.sim.building.draws import read_draws, written_draws
 from mend.sim.building.floor_pose import FloorPose
@@ -35,6 +36,7 @@ _AT_DOOR_M = 1.0
 _FURNITURE_MOVES_EVERY_S = 60.0
 """So often somebody puts a piece of furniture elsewhere, on each floor."""
 _FURNITURE_FROM_ROBOTS_M = 1.0
+_TRIES_TO_PUT_DOWN = 20
 _HELD_OPEN_S = 30.0
 """What people opened for a robot falls shut after so long, once nobody is there."""
 
@@ -50,13 +52,15 @@ class WorldSnapshot(StrictModel):
     beliefs: list[BeliefSnapshot | None]
     furniture: dict[str, list[Row]]
     furniture_moves_s: float
+    carries_s: float | None
     draws: str
 
 
 class BuildingWorld:
     """Implements `mend.sim.world.World`.
 
-    `touches` counts the cycles in which a robot drove against something, or somebody.
+    `touches` counts the cycles in which a robot drove against something, or somebody, `carried`
+    how often one was carried elsewhere.
     """
 
     def __init__(
@@ -66,6 +70,7 @@ class BuildingWorld:
         shut_doors: float,
         rng: np.random.Generator,
         furniture: Furniture,
+        carrying: Carrying,
         maps: Mapping[str, FloorMap] | None = None,
     ) -> None:
         """`shut_doors`: the share of those that people open that is shut at first.
@@ -73,7 +78,7 @@ class BuildingWorld:
         Robots find their way by `maps`; without, they know where they are.
         """
         self.building = building
-        self.touches = 0
+        self.touches = self.carried = 0
         self._time_s = 0.0
         self.bystanders: list[Bystander] = []
         self._doors = {
@@ -88,6 +93,7 @@ class BuildingWorld:
         self._rng = rng
         self._furniture = furniture
         self._furniture_moves_s = _FURNITURE_MOVES_EVERY_S
+        self._carrying = carrying
         self._scans: dict[BuildingRobot, RangeScan] = {}
         senses = Senses(self.time_s, self._height_m, self._scan, self.advance_cycle)
         self.robots = [self._robot(*start, senses, maps) for start in starts]
@@ -114,6 +120,8 @@ class BuildingWorld:
             floor = door.name.split("/", 1)[0]
             door.let_pass(self._time_s, [(x, y) for x, y, _ in self._circles(floor)])
         self._move_furniture()
+        if self._carrying.is_due(self._time_s):
+            self._carry_one()
         for robot in self.robots:
             self._drive(robot)
         for robot in self.robots:
@@ -199,12 +207,18 @@ class BuildingWorld:
 
     # --- People who act ---
 
-    def carry(self, robot: BuildingRobot, to: FloorPose) -> str:
-        """Somebody lifts a robot and puts it down elsewhere, which its wheels do not measure."""
-        if self._touches(to, robot.radius_m + _IN_FRONT_M / 2.0, robot):
-            return "there is no room to put the robot down"
-        robot.stand(to)
-        return ""
+    def _carry_one(self) -> None:
+        """Somebody lifts a robot that drives, and puts it down elsewhere, where there is room."""
+        driving = [each for each in self.robots if each.moving]
+        if not driving:
+            return
+        robot = driving[self._carrying.choose(len(driving))]
+        for _ in range(_TRIES_TO_PUT_DOWN):
+            to = self._carrying.draw(robot.at.floor, self.building.floors[robot.at.floor])
+            if not self._touches(to, robot.radius_m + _IN_FRONT_M / 2.0, robot):
+                robot.stand(to)
+                self.carried += 1
+                return
 
     def intervene(self, intervention: Intervention) -> str:
         """Somebody steps before the first robot that drives, or makes way and opens the door."""
@@ -266,6 +280,7 @@ class BuildingWorld:
             ],
             furniture=self._furniture.rows(),
             furniture_moves_s=self._furniture_moves_s,
+            carries_s=self._carrying.due_s,
             draws=written_draws(self._rng),
         )
         return kept.model_dump(mode="json")
@@ -279,6 +294,7 @@ class BuildingWorld:
             raise ValueError("the snapshot has other doors than the building")
         self._furniture.restore(kept.furniture)
         self._furniture_moves_s = kept.furniture_moves_s
+        self._carrying.due_s = kept.carries_s
         read_draws(self._rng, kept.draws)
         self._time_s = kept.time_s
         self._scans.clear()

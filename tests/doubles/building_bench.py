@@ -34,6 +34,7 @@ class BuildingBench:
         seed: int = 1,
         localizer: str = "exact",
         unmapped: float = 0.0,
+        carried_every_s: float = 0.0,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
         setup = WorldSetup(
@@ -41,7 +42,12 @@ class BuildingBench:
             scene=self.scene,
             seed=seed,
             speed=None,
-            options={"shut_doors": shut_doors, "localizer": localizer, "unmapped": unmapped},
+            options={
+                "shut_doors": shut_doors,
+                "localizer": localizer,
+                "unmapped": unmapped,
+                "carried_every_s": carried_every_s,
+            },
         )
         self.group: SharedWorld = BUILDINGS.create_agents(setup)
         self.world: BuildingWorld = self.group.world  # type: ignore[assignment]

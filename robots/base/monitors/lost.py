@@ -30,5 +30,7 @@ class Lost(BaseMonitor[LostPatience]):
         if view.lost_s < self.settings.patience_s:
             return None
         guesses = list(view.guesses())
-        seen = "what I see fits several places" if guesses else "what I see fits no place I know"
-        return Detection(camera=LASER, explanation=seen, guesses=guesses)
+        explanation = "what I see fits no place for sure"
+        if not guesses:
+            explanation = "what I see fits no place that I know"
+        return Detection(camera=LASER, explanation=explanation, guesses=guesses)
