@@ -41,10 +41,12 @@ class Base(Effector[BaseBody]):
         self._surroundings = Surroundings()
         self._jumps = Jumps()
         self._following: WayFollower | None = None
+        self._barred: WayFollower | None = None
 
     def start(self, to: BasePose, speed: float) -> None:
         """Begin to drive to a pose, at `speed` in (0, 1] of its best. Raises `CommandError`."""
         self._following, self._speed = self._follower(to), speed
+        self._barred = None
         self.at_rest = False
 
     def jumps(self) -> bool:
@@ -62,11 +64,14 @@ class Base(Effector[BaseBody]):
         if self.whereabouts.is_lost:
             self.body.stop()
             return
-        self.body.move(self._following.choose(here, now, seen, self.pace))
+        known = self.ways.walls_near(here)
+        self.body.move(self._following.choose(here, now, seen, self.pace, known))
 
     def stop(self) -> None:
         """Brake; it is on no way any more."""
         super().stop()
+        if self._following is not None and self._following.barred:
+            self._barred = self._following
         self._following = None
         self.at_rest = True
 
@@ -106,9 +111,17 @@ class Base(Effector[BaseBody]):
         return Barrier(max(0.0, away_m - self.body.radius_m), self.ways.door_at(here, beyond))
 
     def gets_to(self, to: BasePose) -> bool:
-        """Whether what is seen leaves a way on to a pose. Raises `CommandError`."""
+        """Whether what is seen leaves a way on to a pose. Raises `CommandError`.
+
+        Where it stopped because it did not get on, it is the way there that counts: another one
+        might lead back first, where of course nothing is in the way.
+        """
         here = self.body.pose()
-        return self._follower(to).gets_on(here, self._look_around(here).points)
+        points = np.vstack([self._look_around(here).points, self.ways.walls_near(here)])
+        barred = self._barred
+        if barred is not None and barred.goal == to and not barred.gets_on(here, points):
+            return False
+        return self._follower(to).gets_on(here, points)
 
     # --- Within -------------------------------------------------------------------------------
 

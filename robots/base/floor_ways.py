@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mend.maps.building.building import Building
 from mend.maps.building.clearance import clearance_m
@@ -15,6 +16,9 @@ from mend.robots.execution.command_error import CommandError
 from mend.tasks.frames import Frame
 
 Point = tuple[float, float]
+
+_NEAR_M = 4.0
+_SAMPLE_M = 0.15
 
 
 class FloorWays:
@@ -29,6 +33,7 @@ class FloorWays:
         self._frame = frame
         self._speed_m_s = speed_m_s
         self._needs_m = needs_m
+        self._walls: dict[str, NDArray[np.float64]] = {}
         self._graphs = {floor: _lanes_of(building, floor) for floor in building.floors}
 
     def path(self, here: BasePose, to: BasePose) -> Sequence[Point]:
@@ -55,6 +60,17 @@ class FloorWays:
             if len(crossed_by(way, np.array([[*door.posts[0], *door.posts[1]]]))):
                 return name
         return None
+
+    def walls_near(self, here: BasePose) -> NDArray[np.float64]:
+        """Points (n, 2) on the walls around a pose, doors left out."""
+        at, points = np.array(self._on_map(here)), self._wall_points(self._floor(here))
+        near = points[np.abs(points - at).max(axis=1, initial=0.0) < _NEAR_M]
+        return np.array([self._frame.to_robot(x, y) for x, y in near.tolist()]).reshape(-1, 2)
+
+    def _wall_points(self, floor: str) -> NDArray[np.float64]:
+        if floor not in self._walls:
+            self._walls[floor] = _sampled(self._building.floors[floor].wall_segments)
+        return self._walls[floor]
 
     def _along_lanes(self, floor: str, start: Point, goal: Point) -> list[Point]:
         """From the place that is nearest to the start to the one nearest to the goal."""
@@ -101,6 +117,15 @@ def _lanes_of(building: Building, floor: str) -> NavigationGraph:
         if each.kind is not WayKind.ELEVATOR and each.a.startswith(prefix)
     ]
     return NavigationGraph(places, lanes)
+
+
+def _sampled(segments: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points (n, 2) along segments, so close that no base gets through between two."""
+    points = [np.zeros((0, 2))]
+    for x0, y0, x1, y1 in segments.tolist():
+        shares = np.linspace(0.0, 1.0, 2 + int(math.hypot(x1 - x0, y1 - y0) / _SAMPLE_M))
+        points.append(np.column_stack([x0 + shares * (x1 - x0), y0 + shares * (y1 - y0)]))
+    return np.vstack(points)
 
 
 def _away_m(place: Place, point: Point) -> float:

@@ -3,6 +3,9 @@
 from collections.abc import Sequence
 from typing import Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from mend.robots.base.body import BasePose
 
 
@@ -20,6 +23,10 @@ class Ways(Protocol):
         """The door between a pose and a point ahead; None where there is none."""
         ...
 
+    def walls_near(self, here: BasePose) -> NDArray[np.float64]:
+        """Points (n, 2) on walls around a pose, also on those that something hides from it."""
+        ...
+
 
 class StraightWays:
     """The way of who knows of no walls: straight to the goal."""
@@ -31,3 +38,7 @@ class StraightWays:
     def door_at(self, here: BasePose, ahead: tuple[float, float]) -> str | None:  # noqa: ARG002
         """None: it knows of no doors."""
         return None
+
+    def walls_near(self, here: BasePose) -> NDArray[np.float64]:  # noqa: ARG002
+        """None: it knows of no walls."""
+        return np.zeros((0, 2))

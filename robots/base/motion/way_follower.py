@@ -21,6 +21,7 @@ from mend.robots.base.motion.surroundings import Seen, in_frame_of
 
 Points = NDArray[np.float64]
 
+NOTHING: Points = np.zeros((0, 2))
 _SEEN_AHEAD_M = 2.5
 """It looks so far along its way for the farthest point that it can get to: within the grid."""
 _EVERY_M = 0.05
@@ -52,7 +53,7 @@ class WayFollower:
         """`way` is all of it, from where the base is; poses and points are in one frame."""
         self._window = DynamicWindow(limits, radius_m, period_s)
         self._limits, self._radius_m = limits, radius_m
-        self._way, self._goal = Polyline(way), goal
+        self._way, self.goal = Polyline(way), goal
         self._along_m = 0.0
         self._before: BasePose | None = None
         self._at_end = False
@@ -64,10 +65,21 @@ class WayFollower:
         self.barred = False
         """Whether what is seen leaves no way on."""
 
-    def choose(self, here: BasePose, now: Velocity, seen: Seen, speed: float) -> Velocity:
-        """The velocity of the next cycle; what is seen is in the way's frame."""
+    def choose(
+        self,
+        here: BasePose,
+        now: Velocity,
+        seen: Seen,
+        speed: float,
+        known: Points = NOTHING,
+    ) -> Velocity:
+        """The velocity of the next cycle; what is seen is in the way's frame.
+
+        `known` (n, 2) is what its map has there: no way leads round through a wall that something
+        hides. How fast it may go is judged by what is seen alone.
+        """
         self._advance(here)
-        steering = self._steering(here, now, seen.points)
+        steering = self._steering(here, now, np.vstack([seen.points, known]))
         return self._window.choose(now, steering, seen.in_frame_of(here), speed)
 
     def gets_on(self, here: BasePose, points: Points, by_m: float = _GETS_ON_M) -> bool:
@@ -131,7 +143,7 @@ class WayFollower:
     def _steering(self, here: BasePose, now: Velocity, points: Points) -> Steering:
         off_m = math.dist((here.x, here.y), self._way.end)
         self._at_end = off_m <= (_STILL_THERE_M if self._at_end else _THERE_M)
-        turn_rad = math.remainder(self._goal.yaw - here.yaw, math.tau)
+        turn_rad = math.remainder(self.goal.yaw - here.yaw, math.tau)
         if self._at_end:
             self.left_m, self.barred = off_m, False
             return Steering(None, turn_rad)
