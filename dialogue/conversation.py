@@ -15,11 +15,13 @@ from mend.dialogue.script import (
     CloseReason,
     CloseState,
     Expectation,
+    Help,
     HelpState,
     LeaveState,
     Remark,
     Script,
     State,
+    ToldState,
     Turn,
 )
 from mend.dialogue.wording import sentence, word
@@ -76,6 +78,7 @@ _SEEN_NOW = {
     Expectation.IN_REACH: "I see the {object} within my reach now.",
     Expectation.WAY_CLEAR: "I see nothing in my way now.",
     Expectation.VIEW_CLEAR: "I see the table now.",
+    Expectation.LOCATED: "I know where I am now.",
     Expectation.IN_GRIPPER: "I have the {object} between my fingers.",
 }
 
@@ -102,7 +105,7 @@ class Conversation:
         self._outlook = outlook
         self._said_with = said_with or outlook
         self._phase = ConversationPhase.NEW
-        self._at: AskState | HelpState | None = None
+        self._at: AskState | HelpState | ToldState | None = None
         self._reasks_left = 0
 
     @property
@@ -148,6 +151,10 @@ class Conversation:
 
     def help_seen(self, change: Change) -> list[Turn]:
         """The camera saw what was promised; `change`: what it saw to change since the question."""
+        _CALLS.require(self._phase, DialogueCall.HELP_SEEN)
+        if isinstance(self._at, ToldState):
+            said = self._word(self._at.thanks)
+            return self._settle(CloseReason.RESOLVED, self._at.resolution, said, change)
         state = self._require_help_state(DialogueCall.HELP_SEEN)
         said = state.thanks if change.by_a_person else state.unchanged
         if change is Change.UNKNOWN:
@@ -157,6 +164,10 @@ class Conversation:
 
     def help_not_seen(self) -> list[Turn]:
         """The promised help was not seen in time: ask about it again, or give up."""
+        _CALLS.require(self._phase, DialogueCall.HELP_NOT_SEEN)
+        if isinstance(self._at, ToldState):
+            doubted = Remark(self._word(self._at.doubted))
+            return [doubted, *self._enter(self._at.otherwise, heard=False)]
         state = self._require_help_state(DialogueCall.HELP_NOT_SEEN)
         if self._reasks_left == 0:
             return self._give_up("I still do not see that help.")
@@ -210,6 +221,9 @@ class Conversation:
                 self._at, self._phase = state, ConversationPhase.AWAITING_HELP
                 self._reasks_left = self._script.reasks
                 return [Remark(self._word(state.text)), AwaitHelp(state.help)]
+            case ToldState(guess=guess):
+                self._at, self._phase = state, ConversationPhase.AWAITING_HELP
+                return [AwaitHelp(Help.TELL_PLACE, self._issue.guesses[guess - 1])]
             case LeaveState():
                 return [Remark(self._word(state.text)), self._close(CloseReason.LEFT_OUT, None)]
             case CloseState(resolution=Resolution.ROBOT_RETRY):
@@ -246,7 +260,8 @@ class Conversation:
         return self._word(effect)
 
     def _passes_over(self, state: AskState) -> bool:
-        return state.if_refused and not self._outlook.may_be_left
+        refused_first = state.if_refused and not self._outlook.may_be_left
+        return refused_first or state.guess > len(self._issue.guesses)
 
     def _settle(
         self, reason: CloseReason, wanted: Resolution, said: str, change: Change
@@ -311,6 +326,8 @@ class Conversation:
         """Whether what an answer leads to closes the dialogue or sets the robot in motion."""
         match following:
             case AskState():
+                return False
+            case ToldState():
                 return False
             case HelpState(resolution=resolution):
                 return resolution in _ROBOT_GOES_ON

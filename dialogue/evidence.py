@@ -11,8 +11,9 @@ part within reach, a seen obstruction gone) is new even if it is so at the first
 robot may well have been wrong before, so that nobody is thanked for it. What was felt is never put
 right by a camera: it takes a person's word and a look.
 
-A camera may come to see again by itself, and what it took for something in the way may be gone by
-itself, so that nobody is thanked for either who has not promised it.
+A camera may come to see again by itself, what it took for something in the way may be gone by
+itself, and a robot may find out by itself where it is, so that nobody is thanked for any of these
+who has not promised or told it.
 
 A person has helped if a change was seen that only a person can have made: the object appeared,
 moved, or came between the fingers, or what was in the way is gone. A promise alone is not help, nor
@@ -32,7 +33,7 @@ MOVED_M = 0.02
 RAISED_M = 0.012
 """One that is seen so much higher or lower has toppled or was set upright; heights err by less."""
 
-_BY_ITSELF = (Expectation.VIEW_CLEAR, Expectation.WAY_CLEAR)
+_BY_ITSELF = (Expectation.VIEW_CLEAR, Expectation.WAY_CLEAR, Expectation.LOCATED)
 
 Point = tuple[float, float, float]
 
@@ -46,6 +47,8 @@ class Change(StrEnum):
     APPEARED = "appeared"
     """The object was not to be seen, and now is."""
     MOVED = "moved"
+    TOLD = "told"
+    """Somebody said where the robot is, and what it sees agrees."""
     HANDED_OVER = "handed_over"
     """The object came between the fingers."""
     CLEARED = "cleared"

@@ -28,6 +28,8 @@ class Help(StrEnum):
     """Get what blocks the arm out of its way."""
     CLEAR_VIEW = "clear_view"
     """Get what hides the table from the head camera out of its view."""
+    TELL_PLACE = "tell_place"
+    """Nothing to be done: tell the robot where it is. What it sees there has to agree."""
 
 
 class CloseReason(StrEnum):
@@ -68,9 +70,13 @@ class Remark:
 
 @dataclass(frozen=True, slots=True)
 class AwaitHelp:
-    """Watch for promised help; the conversation is told whether it was seen."""
+    """Watch for promised help; the conversation is told whether it was seen.
+
+    `guess`: where a person has said that the robot is.
+    """
 
     help: Help
+    guess: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +108,8 @@ class Expectation(StrEnum):
     """Nothing is in the arm's way."""
     VIEW_CLEAR = "view_clear"
     """The head camera shows the table."""
+    LOCATED = "located"
+    """The robot knows where it is."""
 
 
 EXPECTED: Mapping[Help, Expectation] = {
@@ -110,6 +118,7 @@ EXPECTED: Mapping[Help, Expectation] = {
     Help.HAND_OVER: Expectation.IN_GRIPPER,
     Help.CLEAR_WAY: Expectation.WAY_CLEAR,
     Help.CLEAR_VIEW: Expectation.VIEW_CLEAR,
+    Help.TELL_PLACE: Expectation.LOCATED,
 }
 """What a robot has to see before a promise counts as kept."""
 
@@ -123,7 +132,8 @@ class AskState:
     """Asks; `yes`, `no` and `unanswered` name the states that follow.
 
     Silence gives up unless `unanswered` says otherwise. A question that is only put `if_refused`
-    before (`Outlook.may_be_left`) is passed over the first time, as if the answer were no.
+    before (`Outlook.may_be_left`) is passed over the first time, as if the answer were no, and so
+    is one about a `guess` (counted from 1) where the robot has not as many.
     Every text of a table may hold the fields of `dialogue.wording`.
     """
 
@@ -135,6 +145,7 @@ class AskState:
     unanswered: str | None = None
     unanswered_effect: str = ATTEMPT_FAILED
     if_refused: bool = False
+    guess: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +169,21 @@ class HelpState:
 
 
 @dataclass(frozen=True, slots=True)
+class ToldState:
+    """A person has said yes to a `guess`: the robot sees whether that agrees with what it sees.
+
+    If so it says `thanks` and closes with `resolution`; else it says `doubted`, and `otherwise`
+    names the state that follows.
+    """
+
+    guess: int
+    resolution: Resolution
+    thanks: str
+    doubted: str
+    otherwise: str
+
+
+@dataclass(frozen=True, slots=True)
 class CloseState:
     """Says a last word and closes.
 
@@ -176,7 +202,7 @@ class LeaveState:
     text: str
 
 
-State = AskState | HelpState | CloseState | LeaveState
+State = AskState | HelpState | ToldState | CloseState | LeaveState
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ from mend.dialogue.script import (
     LeaveState,
     Script,
     State,
+    ToldState,
 )
 from mend.dialogue.wording import FIELDS, unknown_fields
 from mend.errors import MendError
@@ -51,7 +52,7 @@ def _following(state: State) -> tuple[str, ...]:
     match state:
         case AskState(yes=yes, no=no, unanswered=unanswered):
             return (yes, no, *([unanswered] if unanswered else []))
-        case HelpState(otherwise=otherwise):
+        case HelpState(otherwise=otherwise) | ToldState(otherwise=otherwise):
             return (otherwise,)
         case CloseState() | LeaveState():
             return ()
@@ -113,7 +114,10 @@ def _unverified(script: Script) -> Iterator[str]:
     rule = "the leaf would be done without the object seen at its place"
     for name, state in script.states.items():
         match state:
-            case CloseState(resolution=Resolution.HUMAN_FINISH):
+            case (
+                CloseState(resolution=Resolution.HUMAN_FINISH)
+                | ToldState(resolution=Resolution.HUMAN_FINISH)
+            ):
                 yield f"state '{name}' closes with human_finish on a mere word; {rule}"
             case HelpState(resolution=Resolution.HUMAN_FINISH, help=promised):
                 if promised is not Help.PLACE:
@@ -131,8 +135,9 @@ _NOT_SENTENCES = {
     "otherwise",
     "help",
     "resolution",
+    "guess",
 }
 _SENTENCES: dict[type, list[str]] = {
     kind: [field.name for field in fields(kind) if field.name not in _NOT_SENTENCES]
-    for kind in (AskState, HelpState, CloseState, LeaveState)
+    for kind in (AskState, HelpState, ToldState, CloseState, LeaveState)
 }

@@ -7,6 +7,7 @@ from mend.dialogue.outlook import Outlook
 from mend.dialogue.spoken import spoken
 from mend.tasks.issue import Issue
 
+_GUESSES = ("guess_1", "guess_2", "guess_3")
 FIELDS = frozenset(
     {
         "object",
@@ -20,17 +21,22 @@ FIELDS = frozenset(
         "again",
         "later",
         "go_on",
+        *_GUESSES,
     }
 )
 """`with_object`: ` with the cup` with a blank before it, or nothing where there is no object.
 `why`: what the robot sensed, as a sentence with a blank before it, or nothing. `attempt`:
 `attempt 1 of 3`. `times`: how often this has happened. `again`, `later`, `go_on`: what the robot
-does next after help, after a failed attempt, and if it need not begin anew."""
+does next after help, after a failed attempt, and if it need not begin anew. `guess_1` to
+`guess_3`: where a lost robot may be (`at 101`), or nothing where it has not as many guesses."""
 
 
 def word(text: str, issue: Issue, outlook: Outlook) -> str:
     """Fill in a sentence; a leaf without an object or place is spoken of by its own name."""
+    guesses = dict.fromkeys(_GUESSES, "")
+    guesses.update(zip(_GUESSES, map(spoken, issue.guesses), strict=False))
     return text.format(
+        **guesses,
         object=spoken(issue.object or issue.name),
         with_object=f" with the {spoken(issue.object)}" if issue.object else "",
         place=spoken(issue.place or issue.name),

@@ -1,6 +1,6 @@
 """What every localizer offers: one update per scan, one estimate per update."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Protocol
@@ -55,6 +55,26 @@ class Localizer(Protocol):
 
         Raises `InvalidScanError`, and is then as it was before.
         """
+        ...
+
+
+class SearchingLocalizer(Localizer, Protocol):
+    """A localizer that, lost, says where on its map the robot may be, and takes what it is told."""
+
+    def search_next(self) -> None:
+        """Let the next update of a robot that is lost, or in doubt, search the map at once."""
+        ...
+
+    def open_places(self) -> Sequence[Poses]:
+        """Where the robot may be by what it has seen since it was lost, the likeliest first."""
+        ...
+
+    def get_lost(self) -> None:
+        """Where the robot is believed to be is believed no more, until a search finds a place."""
+        ...
+
+    def take(self, place: Poses) -> None:
+        """The robot is at one of the open places: believed from now on, as far as it fits."""
         ...
 
 

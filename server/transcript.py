@@ -77,6 +77,7 @@ PROMISES: dict[Help, str] = {
     Help.HAND_OVER: "{object} between the fingers",
     Help.CLEAR_WAY: "the way clear",
     Help.CLEAR_VIEW: "the table again",
+    Help.TELL_PLACE: "that it is where it was told",
 }
 
 RESOLUTIONS: dict[Resolution, str] = {

@@ -19,6 +19,10 @@ _ACTS = {
 }
 
 
+TELL_PLACE = "tell_place"
+"""Who has told a robot where it is has nothing left to do."""
+
+
 @dataclass(frozen=True, slots=True)
 class Promise:
     """What was promised: `help` is a dialogue's word for it (`place`, `put_back`, ...).
@@ -52,6 +56,8 @@ def deed(
     `others` are the objects that the person may confuse with the promised one. Raises `ValueError`
     for help that nobody can give.
     """
+    if promise.help == TELL_PLACE:
+        return None
     if promise.help not in _ACTS:
         known = ", ".join(_ACTS)
         raise ValueError(f"a person cannot give the help '{promise.help}', only {known}")

@@ -26,6 +26,7 @@ class Issue:
     `node` is the leaf's path (`/0/2`); `step` is the behavior's step in which it was seen,
     0 before the first. `reason` is a clause that says what the robot sensed, empty if it does not
     say; `sensed` how it came to know. `interrupts`: the robot does not go on by itself.
+    `guesses`: where it may be if it is lost, likeliest first (`at F1-101`).
     """
 
     kind: str
@@ -38,3 +39,4 @@ class Issue:
     reason: str = ""
     sensed: Sensed = Sensed.SEEN
     interrupts: bool = True
+    guesses: tuple[str, ...] = ()

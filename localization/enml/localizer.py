@@ -107,6 +107,25 @@ class EnmlLocalizer:
         """The poses (n, 3) that the newest episode holds, oldest first."""
         return self._episode.poses.copy()
 
+    def search_next(self) -> None:
+        """Let the next update of a robot that is lost, or in doubt, search the map at once."""
+        self._next_search_m = self._driven_m
+
+    def open_places(self) -> list[Poses]:
+        """Where the robot may be by what it has seen since it was lost, the likeliest first."""
+        if not len(self._episode.nodes):
+            return []
+        return [each.pose for each in self._recovery.open_places(self._episode)]
+
+    def get_lost(self) -> None:
+        """Where the robot is believed to be is believed no more, until a search finds a place."""
+        self._may_be_anywhere = True
+        self._lose()
+
+    def take(self, place: Poses) -> None:
+        """The robot is at one of the open places: on probation, as what was found by a search."""
+        self._move(self._recovery.weighed(self._episode, np.asarray(place)), proven=False)
+
     def update(self, odometry: Poses, scan: Scan) -> Estimate:
         """Take the motion since the last update (robot's frame) and what is seen after it.
 

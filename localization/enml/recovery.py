@@ -101,6 +101,20 @@ class Recovery:
         if self._last is not None:
             self._last = compose(self._last, motion)
 
+    def open_places(self, episode: Episode) -> list[Found]:
+        """The places that explain what is seen and are hardly worse than the best, best first."""
+        looks = looks_of(episode, _SCANS_WEIGHED)
+        ranked = _ranked(self._found(list(self._open), looks)) if len(self._open) else []
+        return [
+            each
+            for each in ranked
+            if self._explains(each) and each.score > ranked[0].score - _IN_THE_RUNNING
+        ]
+
+    def weighed(self, episode: Episode, place: Poses) -> Found:
+        """A place, with what speaks for it."""
+        return self._found([place], looks_of(episode, _SCANS_WEIGHED))[0]
+
     def behind(self, node: PoseNode, pose: Poses) -> float:
         """The share of a scan's returns from behind walls of the map, seen from a pose."""
         seen = weigh(self._visible, self._field, [look_of(node, np.zeros(3))], pose).evidence

@@ -8,10 +8,12 @@ import numpy as np
 from mend.maps.building.cabin import CABIN_M
 from mend.robots.base.body import BaseBody, BasePose
 from mend.robots.base.elevators import Elevators, NoElevators
-from mend.robots.base.motion.surroundings import Seen, Surroundings
+from mend.robots.base.jumps import Jumps
+from mend.robots.base.motion.surroundings import Seen, Surroundings, hidden_behind
 from mend.robots.base.motion.warming_up import warm_up
 from mend.robots.base.motion.way_follower import WayFollower
 from mend.robots.base.ways import Ways
+from mend.robots.base.whereabouts import AlwaysKnown, Whereabouts
 from mend.robots.execution.effector import Effector
 
 _SLOW_M_S, _SLOW_RAD_S = 0.05, 0.1
@@ -30,32 +32,54 @@ class Barrier:
 class Base(Effector[BaseBody]):
     """A base; it is at rest wherever it stands."""
 
-    def __init__(self, body: BaseBody, ways: Ways, elevators: Elevators | None = None) -> None:
-        """`ways` says which points to pass to a goal."""
+    def __init__(
+        self,
+        body: BaseBody,
+        ways: Ways,
+        elevators: Elevators | None = None,
+        whereabouts: Whereabouts | None = None,
+    ) -> None:
+        """`ways` says which points to pass to a goal, `whereabouts` if it may be lost."""
         warm_up()
         super().__init__(body)
         self.ways = ways
         self.elevators = elevators or NoElevators()
+        self.whereabouts: Whereabouts = whereabouts or AlwaysKnown()
         self.at_rest = True
         self._speed = 1.0
         self._surroundings = Surroundings()
+        self._jumps = Jumps()
         self._following: WayFollower | None = None
+        self._barred: WayFollower | None = None
 
     def start(self, to: BasePose, speed: float) -> None:
         """Begin to drive to a pose, at `speed` in (0, 1] of its best. Raises `CommandError`."""
         self._following, self._speed = self._follower(to), speed
+        self._barred = None
         self.at_rest = False
 
+    def jumps(self) -> bool:
+        """Whether it now believes to be elsewhere than where its way led it; once a cycle."""
+        return self._jumps.note(self.body.pose(), self.body.odometry())
+
     def drive_on(self) -> None:
-        """Choose how to move in the next control cycle; once a cycle, after `start`."""
+        """Choose how to move in the next control cycle; once a cycle, after `start`.
+
+        Who is lost stands still until it knows where it is.
+        """
         assert self._following is not None, "it was started"
         here, now = self.body.pose(), self.body.velocity()
         seen = self._look_around(here)
+        if self.whereabouts.is_lost:
+            self.body.stop()
+            return
         self.body.move(self._following.choose(here, now, seen, self.pace))
 
     def stop(self) -> None:
         """Brake; it is on no way any more."""
         super().stop()
+        if self._following is not None and self._following.barred:
+            self._barred = self._following
         self._following = None
         self.at_rest = True
 
@@ -84,7 +108,7 @@ class Base(Effector[BaseBody]):
         following, here = self._following, self.body.pose()
         if following is None or not following.barred:
             return None
-        points = self._surroundings.seen.points
+        points = self._surroundings.seen.in_frame_of(self.body.odometry()).seen_from(here).points
         met = following.first_met(points)
         if met is None:
             nearest_m = np.hypot(points[:, 0] - here.x, points[:, 1] - here.y).min(initial=math.inf)
@@ -99,9 +123,17 @@ class Base(Effector[BaseBody]):
         return bool((self.body.scan().ranges_m > 2 * CABIN_M).any())
 
     def gets_to(self, to: BasePose) -> bool:
-        """Whether what is seen leaves a way on to a pose. Raises `CommandError`."""
+        """Whether what is seen leaves a way on to a pose. Raises `CommandError`.
+
+        Where it stopped because it did not get on, it is the way there that counts: another one
+        might lead back first, where of course nothing is in the way.
+        """
         here = self.body.pose()
-        return self._follower(to).gets_on(here, self._look_around(here).points)
+        points = self._look_around(here).points
+        barred = self._barred
+        if barred is not None and barred.goal == to and not barred.gets_on(here, points):
+            return False
+        return self._follower(to).gets_on(here, points)
 
     # --- Within -------------------------------------------------------------------------------
 
@@ -114,5 +146,12 @@ class Base(Effector[BaseBody]):
         return WayFollower(body.limits, body.radius_m, body.control_period_s, way, to)
 
     def _look_around(self, here: BasePose) -> Seen:
-        known = self.ways.walls(here)
-        return self._surroundings.take(self.body.scan(), here, self.body.time_s(), known)
+        """What is seen and remembered, and walls that it hides, in the frame of `here`.
+
+        It is remembered by the wheels, which never jump: what the base believes of where it is
+        moves nothing that it sees around it.
+        """
+        wheels, scan = self.body.odometry(), self.body.scan()
+        seen = self._surroundings.take(scan, wheels, self.body.time_s())
+        seen = seen.in_frame_of(wheels).seen_from(here)
+        return seen.with_still(hidden_behind(scan, here, self.ways.walls(here)))

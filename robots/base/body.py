@@ -104,6 +104,10 @@ class BaseBody(MovingBody, Protocol):
         """Where it is, as it knows it itself (odometry, or a localizer)."""
         ...
 
+    def odometry(self) -> BasePose:
+        """Where it has come to since some start, as its wheels say: it drifts, and never jumps."""
+        ...
+
     def velocity(self) -> Velocity:
         """How it moves now, as its odometry says."""
         ...

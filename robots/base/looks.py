@@ -21,6 +21,8 @@ def look_as_told(
     base: Base, command: str, look: Look, held: AnyExecution | None
 ) -> Routine[Looked]:
     """The routine of a `look` command. Raises `CommandError` for what no base can see."""
+    if look.expect == "located":
+        return _look_where(base, command, look)
     if look.expect not in (None, "way_clear"):
         raise CommandError(f"a base that drives cannot look for '{look.expect}'")
 
@@ -37,3 +39,28 @@ def look_as_told(
         return answer(base, command, None if look.expect is None else True)
 
     return routine()
+
+
+def _look_where(base: Base, command: str, look: Look) -> Routine[Looked]:
+    """Whether it knows where it is, or, with a guess, sees that it is there."""
+    end_s = base.body.time_s() + look.within_s
+    if look.guess is not None:
+        return _look_there(base, command, look.guess)
+
+    def routine() -> Routine[Looked]:
+        while base.whereabouts.is_lost:
+            left_s = end_s - base.body.time_s()
+            if left_s <= 1e-9:
+                return answer(base, command, fulfilled=False)
+            yield from base.wait(min(_PERIOD_S, left_s))
+        return answer(base, command, fulfilled=True)
+
+    return routine()
+
+
+def _look_there(base: Base, command: str, guess: str) -> Routine[Looked]:
+    """By a scan that was made after somebody said so, and some more that bear it out."""
+    yield from base.wait(_PERIOD_S)
+    agrees = base.whereabouts.believe(guess)
+    yield from base.wait(_PERIOD_S)
+    return answer(base, command, fulfilled=agrees and not base.whereabouts.is_lost)

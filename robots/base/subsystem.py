@@ -17,6 +17,7 @@ from mend.robots.base.elevators import Elevators
 from mend.robots.base.looks import answer, look_as_told
 from mend.robots.base.monitors.monitor import BaseView
 from mend.robots.base.ways import StraightWays, Ways
+from mend.robots.base.whereabouts import Whereabouts
 from mend.robots.body import CameraImage
 from mend.robots.catalogue import Catalogue
 from mend.robots.execution.behavior import Behavior, of_kind, read_parameters
@@ -50,9 +51,13 @@ class BaseSubsystem:
         monitors: Mapping[str, type[AnyMonitor]],
         ways: Ways | None = None,
         elevators: Elevators | None = None,
+        whereabouts: Whereabouts | None = None,
     ) -> None:
-        """It takes those of bases. Without `ways` it goes straight to each goal."""
-        self.effector = Base(body, ways or StraightWays(), elevators)
+        """It takes those of bases. Without `ways` it goes straight to each goal.
+
+        Without `whereabouts` it always believes its body's pose.
+        """
+        self.effector = Base(body, ways or StraightWays(), elevators, whereabouts)
         self._places = {name: _pose(each) for name, each in catalogue.places.items()}
         self._behaviors = of_kind(behaviors, BaseBehavior)  # type: ignore[type-abstract]
         self._monitors = for_view(monitors.values(), BaseView)
@@ -72,7 +77,8 @@ class BaseSubsystem:
             ways=self.effector.ways,
         )
         steps = behavior.steps(parameters, situation)
-        self._check_ways(situation.here, steps)
+        if not self.effector.whereabouts.is_lost:
+            self._check_ways(situation.here, steps)
         return BaseExecution(
             start.execution,
             behavior.monitored_as,

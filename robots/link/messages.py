@@ -36,6 +36,9 @@ Sentence = Annotated[str, Field(max_length=4000)]
 MOST = 10_000
 """So many objects, results or names are the most that one message tells of."""
 
+MOST_GUESSES = 3
+"""About so many places people are asked at most by a robot that is lost."""
+
 Time = Annotated[float, Field(ge=-1e12, le=1e12)]
 """Seconds of the robot's clock; any zero, that of the calendar as well."""
 
@@ -126,7 +129,7 @@ class Detection(Message):
     can tell that it is over. `part` is what is in the way, if that is a known one. `probability` is
     that of the issue, from a monitor that weighs several cues; one that goes by what is plainly
     seen, or not seen, gives none. `explanation` is a clause that people are told: what the robot
-    sensed.
+    sensed. `guesses`: where a robot may be that is lost, likeliest first (`at F1-101`).
     """
 
     camera: Word
@@ -139,6 +142,7 @@ class Detection(Message):
     part: Word | None = None
     probability: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
     explanation: Sentence = ""
+    guesses: Annotated[list[Word], Field(max_length=MOST_GUESSES)] = []
 
 
 LASER = "laser"
@@ -397,6 +401,9 @@ class Resume(Message):
     object_at: tuple[float, float] | None = None
 
 
+Expected = Literal["at_place", "in_reach", "in_gripper", "way_clear", "view_clear", "located"]
+
+
 class Look(Message):
     """Look with the cameras.
 
@@ -404,7 +411,8 @@ class Look(Message):
     have passed. `at_place`: `object` rests at `place`; `in_reach`: `object` rests within the
     graspable range; `in_gripper`: take `object` from a person (move to the hand-over pose, open,
     close once it is seen between the fingers); `way_clear`: nothing is in the arm's way;
-    `view_clear`: the head camera shows the table.
+    `view_clear`: the head camera shows the table; `located`: it knows where it is. A person has
+    told `guess`, one of a detection's `guesses`: then what it sees has to agree with that.
     `rate`: simulated worlds let their clock run so fast while they look again and again; None is
     the run's own speed. `finished`: the results to judge by what the last pictures show.
     """
@@ -412,7 +420,8 @@ class Look(Message):
     type: Literal["look"] = "look"
     object: str | None = None
     place: str | None = None
-    expect: Literal["at_place", "in_reach", "in_gripper", "way_clear", "view_clear"] | None = None
+    expect: Expected | None = None
+    guess: Word | None = None
     within_s: float = 0.0
     rate: float | None = None
     finished: list[FinishedResult] = []

@@ -282,10 +282,14 @@ class Escalated(DialogueEvent):
 
 
 class HelpAwaited(DialogueEvent):
-    """A helper promised physical help; the robot watches for it until `until` (run's clock)."""
+    """A helper promised physical help; the robot watches for it until `until` (run's clock).
+
+    `guess`: where the helper has said that the robot is.
+    """
 
     type: Literal["help_awaited"] = "help_awaited"
     help: Help
+    guess: str | None = None
     helper: str
     until: float
 

@@ -160,7 +160,11 @@ class DialogueEvents:
                 case AwaitHelp():
                     events.append(
                         ev.HelpAwaited(
-                            **self._fields(), help=turn.help, helper=helper, until=help_until
+                            **self._fields(),
+                            help=turn.help,
+                            guess=turn.guess,
+                            helper=helper,
+                            until=help_until,
                         )
                     )
                 case Close():

@@ -79,6 +79,7 @@ class DialogueLooks:
             object=dialogue.raised.object,
             place=dialogue.raised.place,
             expect=str(EXPECTED[awaiting.help]),
+            guess=awaiting.guess,
             within_s=max(0.0, awaiting.until - self._context.clock.now()),
             rate=self._rate,
             finished=_result_of(dialogue),
@@ -100,7 +101,7 @@ class DialogueLooks:
 
         What is as promised already, or was only felt, gives the helper time to do it first.
         """
-        if awaiting.help is Help.HAND_OVER:
+        if awaiting.help in (Help.HAND_OVER, Help.TELL_PLACE):
             return awaiting.time
         felt = dialogue.raised.detection is not None and dialogue.raised.detection.felt
         base = self._base(dialogue)
@@ -191,7 +192,7 @@ class DialogueLooks:
         named = dialogue.raised.object is not None
         if Expectation.IN_REACH in watched and named:
             return Expectation.IN_REACH
-        for each in (Expectation.WAY_CLEAR, Expectation.VIEW_CLEAR):
+        for each in (Expectation.WAY_CLEAR, Expectation.VIEW_CLEAR, Expectation.LOCATED):
             if each in watched:
                 return each
         if Expectation.AT_PLACE in watched and named and dialogue.raised.place is not None:
@@ -241,6 +242,8 @@ class DialogueLooks:
 
     def change_seen(self, dialogue: DialogueState, proxy: RobotProxy, helped_with: Help) -> Change:
         """What a look that saw the promised help saw to change."""
+        if helped_with is Help.TELL_PLACE:
+            return Change.TOLD
         base = self._base(dialogue)
         if helped_with is Help.HAND_OVER:
             held_before = base is not None and Expectation.IN_GRIPPER in base.fulfilled

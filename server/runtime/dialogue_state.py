@@ -222,6 +222,7 @@ def issue_of(raised: ev.IssueRaised) -> Issue:
         interrupts=raised.interrupts,
         reason="" if raised.detection is None else raised.detection.explanation,
         sensed=_sensed(raised.detection),
+        guesses=() if raised.detection is None else tuple(raised.detection.guesses),
     )
 
 

@@ -78,7 +78,8 @@ def _unchanged(state: RunState, leaf: int, raised: ev.IssueRaised) -> int:
     looked = dialogue.first_look
     then = before.last_seen if looked is None or looked.blind else looked.position
     put_right = state.scripts[raised.issue].put_right
-    about_the_part = not {Expectation.WAY_CLEAR, Expectation.VIEW_CLEAR} & set(put_right)
+    by_itself = {Expectation.WAY_CLEAR, Expectation.VIEW_CLEAR, Expectation.LOCATED}
+    about_the_part = not by_itself & set(put_right)
     if about_the_part and _is_elsewhere(then, raised.last_seen):
         return 1
     return before.outlook.unchanged + 1

@@ -5,8 +5,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from mend.robots.base.body import STANDING, BasePose, DriveLimits, RangeScan, Velocity
+from mend.robots.base.whereabouts import AlwaysKnown, Whereabouts
 from mend.robots.body import Camera
+from mend.sim.building.belief import Belief
+from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.laser import PERIOD_S as SCAN_PERIOD_S
+from mend.sim.building.odometry import Odometer
 from mend.tasks.frames import Frame
 
 RADIUS_M = 0.25
@@ -21,16 +25,6 @@ LIMITS = DriveLimits(
 
 
 @dataclass(frozen=True, slots=True)
-class FloorPose:
-    """Where something is: a floor by its name, a pose in the building's frame (metres, radians)."""
-
-    floor: str
-    x: float
-    y: float
-    yaw: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
 class Senses:
     """What the world does for a robot: `scan` from where it is, and time that passes for all."""
 
@@ -41,7 +35,10 @@ class Senses:
 
 
 class BuildingRobot:
-    """Implements `mend.robots.base.body.BaseBody`; it goes sideways, and knows where it is."""
+    """Implements `mend.robots.base.body.BaseBody`; it goes sideways.
+
+    Without a `belief` it knows where it is.
+    """
 
     radius_m = RADIUS_M
     limits = LIMITS
@@ -49,8 +46,16 @@ class BuildingRobot:
     control_period_s = PERIOD_S
     cameras: Mapping[str, Camera] = {}
 
-    def __init__(self, frame: Frame, at: FloorPose, senses: Senses) -> None:
+    def __init__(
+        self,
+        frame: Frame,
+        at: FloorPose,
+        senses: Senses,
+        odometer: Odometer,
+        belief: Belief | None = None,
+    ) -> None:
         self._frame = frame
+        self.odometer, self.belief = odometer, belief
         self._senses = senses
         self._wanted = self._now = STANDING
         self.time_s = senses.time_s
@@ -61,10 +66,23 @@ class BuildingRobot:
     # --- What it knows ------------------------------------------------------------------------
 
     def pose(self) -> BasePose:
-        """In its base frame: that in which it stood at the start."""
-        x, y = self._frame.to_robot(self.at.x, self.at.y)
-        yaw = math.remainder(self.at.yaw - self._frame.yaw, math.tau)
+        """In its base frame: that in which it stood at the start.
+
+        How high it is it knows by air pressure, whatever floor it believes to be on.
+        """
+        at = self.at if self.belief is None else self.belief.at
+        x, y = self._frame.to_robot(at.x, at.y)
+        yaw = math.remainder(at.yaw - self._frame.yaw, math.tau)
         return BasePose(x, y, yaw, self._senses.height_m(self.at.floor))
+
+    def odometry(self) -> BasePose:
+        """Where its wheels say that it has come to since it was switched on."""
+        return BasePose(*self.odometer.pose)
+
+    @property
+    def whereabouts(self) -> Whereabouts:
+        """How far it may believe its pose."""
+        return AlwaysKnown() if self.belief is None else self.belief.whereabouts
 
     def velocity(self) -> Velocity:
         return self._now
@@ -89,6 +107,26 @@ class BuildingRobot:
     def stand(self, at: FloorPose) -> None:
         """Be somewhere else, standing: carried there, or after a restart."""
         self.at, self._now, self._wanted = at, STANDING, STANDING
+
+    def ride(self, room: str) -> None:
+        """Be in a cabin that is shut, where its laser tells nothing of where it is."""
+        self.at = replace(self.at, floor=room)
+
+    def get_out_at(self, floor: str, shift: tuple[float, float]) -> None:
+        """Be on a floor, where a shaft is so much shifted (metres), and know that."""
+        x, y = shift
+        self.at = replace(self.at, floor=floor, x=self.at.x + x, y=self.at.y + y)
+        if self.belief is not None:
+            self.belief.enter(floor, shift)
+
+    def drive_to(self, at: FloorPose) -> None:
+        """Get there, which its wheels measure."""
+        x, y = at.x - self.at.x, at.y - self.at.y
+        turned = math.remainder(at.yaw - self.at.yaw, math.tau)
+        heading = self.at.yaw + turned / 2.0
+        cos, sin = math.cos(heading), math.sin(heading)
+        self.odometer.drive(cos * x + sin * y, cos * y - sin * x, turned)
+        self.at = at
 
     def next_pose(self) -> FloorPose:
         """Where it is to be one control cycle later, if nothing holds it up."""

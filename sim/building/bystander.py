@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from mend.sim.building.building_robot import FloorPose
+from mend.sim.building.floor_pose import FloorPose
 
 RADIUS_M = 0.25
 

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +10,7 @@ from mend.documents.strict_model import StrictModel
 from mend.maps.building.building import Building
 from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of
 from mend.robots.base.ways import Ride
-from mend.sim.building.building_robot import BuildingRobot, FloorPose
+from mend.sim.building.building_robot import BuildingRobot
 from mend.sim.building.cabin import Cabin, CabinState, Call
 
 Circle = tuple[float, float, float]
@@ -94,14 +93,16 @@ class ElevatorBank:
             free = self._is_door_free(cabin, riders, circles)
             cabin.pass_time(time_s, inside, door_is_free=free)
             for robot in riders:
-                robot.at = self._taken_along(cabin, robot.at, before)
+                self._take_along(cabin, robot, before)
 
-    def _taken_along(self, cabin: Cabin, at: FloorPose, before: str) -> FloorPose:
-        """Where somebody in a cabin is now; `before` is the floor at which it was."""
-        floor = cabin.floor if cabin.state is CabinState.OPEN else self.room(cabin.name)
-        stops = self._stops[cabin.name]
-        (x0, y0), (x1, y1) = stops[before], stops[cabin.floor]
-        return replace(at, floor=floor, x=at.x + x1 - x0, y=at.y + y1 - y0)
+    def _take_along(self, cabin: Cabin, robot: BuildingRobot, before: str) -> None:
+        """Have a robot where its cabin is now; `before` is the floor at which that was."""
+        if cabin.state is not CabinState.OPEN:
+            robot.ride(self.room(cabin.name))
+        elif robot.at.floor != cabin.floor:
+            stops = self._stops[cabin.name]
+            (x0, y0), (x1, y1) = stops[before], stops[cabin.floor]
+            robot.get_out_at(cabin.floor, (x1 - x0, y1 - y0))
 
     def _is_inside(self, cabin: Cabin, robot: BuildingRobot) -> bool:
         """Whether all of a robot is in a cabin."""

@@ -1,10 +1,18 @@
 """What a run may choose about a building."""
 
+from enum import StrEnum
 from typing import Annotated
 
 from pydantic import ConfigDict, Field
 
 from mend.documents.strict_model import StrictModel
+
+
+class LocalizerKind(StrEnum):
+    """How robots know where they are."""
+
+    ENML = "enml"
+    EXACT = "exact"
 
 
 class BuildingOptions(StrictModel):
@@ -17,3 +25,9 @@ class BuildingOptions(StrictModel):
 
     wrong_floors: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
     """How often somebody who presses a robot's button in an elevator presses another one."""
+    localizer: Annotated[LocalizerKind, Field(strict=False)] = LocalizerKind.ENML
+    """How robots know where they are: by laser and wheels, or exactly."""
+    unmapped: Annotated[float, Field(ge=0.0, le=0.5, strict=False)] = 0.2
+    """Of what lasers see, so much is furniture that is on no map, drawn by the seed."""
+    carried_every_s: Annotated[float, Field(ge=0.0, le=1e6, strict=False)] = 0.0
+    """About so often somebody carries a robot that drives to elsewhere on its floor; 0 is never."""

@@ -13,12 +13,19 @@ from mend.maps.building.building import Building, DoorOpening
 from mend.maps.building.clearance import distances_m
 from mend.robots.base.body import RangeScan
 from mend.sim.building import laser
-from mend.sim.building.building_robot import PERIOD_S, BuildingRobot, FloorPose, Senses
+from mend.sim.building.belief import Belief, BeliefSnapshot, FloorMap
+from mend.sim.building.building_robot import PERIOD_S, BuildingRobot, Senses
 from mend.sim.building.bystander import RADIUS_M as PERSON_RADIUS_M
 from mend.sim.building.bystander import Bystander
 from mend.sim.building.cabin import Cabin, Call
+from mend.sim.building.carrying import Carrying
 from mend.sim.building.door import WorldDoor
+from mend.sim.building.draws import read_draws, written_draws
 from mend.sim.building.elevator_bank import CabinSnapshot, ElevatorBank
+from mend.sim.building.floor_pose import FloorPose
+from mend.sim.building.furniture import Furniture, Row
+from mend.sim.building.laser_noise import measured_m
+from mend.sim.building.odometry import Odometer, OdometerSnapshot
 from mend.sim.building.options import BuildingOptions
 from mend.tasks.frames import Frame
 from mend.tasks.intervention import Act, Intervention
@@ -29,6 +36,10 @@ _IN_FRONT_M = 0.6
 """So far from a robot's rim somebody stands who steps in its way."""
 _AT_DOOR_M = 1.0
 """Who is asked to open a door opens one that a robot stands so near to."""
+_FURNITURE_MOVES_EVERY_S = 60.0
+"""So often somebody puts a piece of furniture elsewhere, on each floor."""
+_FURNITURE_FROM_ROBOTS_M = 1.0
+_TRIES_TO_PUT_DOWN = 20
 _HELD_OPEN_S = 30.0
 """What people opened for a robot falls shut after so long, once nobody is there."""
 
@@ -41,12 +52,19 @@ class WorldSnapshot(StrictModel):
     doors: dict[str, tuple[bool, float | None]]
     bystanders: list[tuple[str, float, float]]
     cabins: dict[str, CabinSnapshot]
+    odometers: list[OdometerSnapshot]
+    beliefs: list[BeliefSnapshot | None]
+    furniture: dict[str, list[Row]]
+    furniture_moves_s: float
+    carries_s: float | None
+    draws: str
 
 
 class BuildingWorld:
     """Implements `mend.sim.world.World`.
 
-    `touches` counts the cycles in which a robot drove against something, or somebody.
+    `touches` counts the cycles in which a robot drove against something, or somebody, `carried`
+    how often one was carried elsewhere.
     """
 
     def __init__(
@@ -55,12 +73,15 @@ class BuildingWorld:
         starts: Iterable[tuple[Frame, FloorPose]],
         options: BuildingOptions,
         rng: np.random.Generator,
+        furniture: Furniture,
+        carrying: Carrying,
+        maps: Mapping[str, FloorMap] | None = None,
     ) -> None:
+        """Robots find their way by `maps`; without, they know where they are."""
         self.building = building
         self.elevators = ElevatorBank(building)
         self.wrong_floors = options.wrong_floors
-        self._rng = rng
-        self.touches = 0
+        self.touches = self.carried = 0
         self._time_s = 0.0
         self.bystanders: list[Bystander] = []
         self._doors = {
@@ -72,9 +93,24 @@ class BuildingWorld:
             for floor, each in building.floors.items()
             for name, plan in each.doors.items()
         }
+        self._rng = rng
+        self._furniture = furniture
+        self._furniture_moves_s = _FURNITURE_MOVES_EVERY_S
+        self._carrying = carrying
         self._scans: dict[BuildingRobot, RangeScan] = {}
         senses = Senses(self.time_s, self._height_m, self._scan, self.advance_cycle)
-        self.robots = [BuildingRobot(*start, senses) for start in starts]
+        self.robots = [self._robot(*start, senses, maps) for start in starts]
+
+    def _robot(
+        self,
+        frame: Frame,
+        at: FloorPose,
+        senses: Senses,
+        maps: Mapping[str, FloorMap] | None,
+    ) -> BuildingRobot:
+        odometer = Odometer(self._rng)
+        belief = None if maps is None else Belief(maps, at, odometer)
+        return BuildingRobot(frame, at, senses, odometer, belief)
 
     # --- Time ---
 
@@ -86,9 +122,22 @@ class BuildingWorld:
         for door in self._doors.values():
             floor = door.name.split("/", 1)[0]
             door.let_pass(self._time_s, [(x, y) for x, y, _ in self._circles(floor)])
+        self._move_furniture()
+        if self._carrying.is_due(self._time_s):
+            self._carry_one()
         for robot in self.robots:
             self._drive(robot)
         self.elevators.pass_time(self._time_s, self.robots, self._circles)
+        for robot in self.robots:
+            self._scan(robot)
+
+    def _move_furniture(self) -> None:
+        if self._time_s < self._furniture_moves_s:
+            return
+        self._furniture_moves_s += _FURNITURE_MOVES_EVERY_S
+        for floor in self.building.floors:
+            stand = [(x, y) for x, y, _ in self._circles(floor)]
+            self._furniture.move_one(floor, stand, _FURNITURE_FROM_ROBOTS_M)
 
     def _drive(self, robot: BuildingRobot) -> None:
         wanted = robot.next_pose()
@@ -98,7 +147,7 @@ class BuildingWorld:
             self.touches += 1
             robot.bump()
         else:
-            robot.at = wanted
+            robot.drive_to(wanted)
 
     def _touches(self, at: FloorPose, radius_m: float, but: BuildingRobot | None = None) -> bool:
         """Whether something round would touch anything there."""
@@ -131,7 +180,7 @@ class BuildingWorld:
         ]
 
     def _segments(self, floor: str) -> NDArray[np.float64]:
-        """Walls, shut doors and cabins."""
+        """Walls, shut doors, cabins and furniture."""
         cabins = self.elevators.walls(floor)
         if floor not in self.building.floors:
             return cabins
@@ -145,6 +194,7 @@ class BuildingWorld:
                 self.building.floors[floor].wall_segments,
                 np.array(shut, np.float64).reshape(-1, 4),
                 cabins,
+                self._furniture.segments(floor),
             ]
         )
 
@@ -157,10 +207,26 @@ class BuildingWorld:
         ranges = laser.ranges_m(
             self._segments(at.floor), self._circles(at.floor, robot), at.x, at.y, at.yaw
         )
-        scan = self._scans[robot] = RangeScan(ranges, laser.ANGLES_RAD, self._time_s)
+        scan = RangeScan(measured_m(ranges, self._rng), laser.ANGLES_RAD, self._time_s)
+        self._scans[robot] = scan
+        if robot.belief is not None and at.floor in self.building.floors:
+            robot.belief.see(scan)
         return scan
 
     # --- People who act ---
+
+    def _carry_one(self) -> None:
+        """Somebody lifts a robot that drives, and puts it down elsewhere, where there is room."""
+        driving = [e for e in self.robots if e.moving and e.at.floor in self.building.floors]
+        if not driving:
+            return
+        robot = driving[self._carrying.choose(len(driving))]
+        for _ in range(_TRIES_TO_PUT_DOWN):
+            to = self._carrying.draw(robot.at.floor, self.building.floors[robot.at.floor])
+            if not self._touches(to, robot.radius_m + _IN_FRONT_M / 2.0, robot):
+                robot.stand(to)
+                self.carried += 1
+                return
 
     def intervene(self, intervention: Intervention) -> str:
         """Somebody steps before the first robot that drives, or makes way and opens the door."""
@@ -238,6 +304,14 @@ class BuildingWorld:
             doors={name: (each.is_shut, each.shuts_s) for name, each in self._doors.items()},
             bystanders=[(e.at.floor, e.at.x, e.at.y) for e in self.bystanders],
             cabins=self.elevators.snapshot(),
+            odometers=[each.odometer.snapshot() for each in self.robots],
+            beliefs=[
+                None if each.belief is None else each.belief.snapshot() for each in self.robots
+            ],
+            furniture=self._furniture.rows(),
+            furniture_moves_s=self._furniture_moves_s,
+            carries_s=self._carrying.due_s,
+            draws=written_draws(self._rng),
         )
         return kept.model_dump(mode="json")
 
@@ -249,10 +323,18 @@ class BuildingWorld:
         if kept.doors.keys() != self._doors.keys():
             raise ValueError("the snapshot has other doors than the building")
         self.elevators.restore(kept.cabins)
+        self._furniture.restore(kept.furniture)
+        self._furniture_moves_s = kept.furniture_moves_s
+        self._carrying.due_s = kept.carries_s
+        read_draws(self._rng, kept.draws)
         self._time_s = kept.time_s
         self._scans.clear()
-        for robot, at in zip(self.robots, kept.robots, strict=True):
+        known = zip(kept.robots, kept.odometers, kept.beliefs, strict=True)
+        for robot, (at, odometer, belief) in zip(self.robots, known, strict=True):
             robot.stand(FloorPose(*at))
+            robot.odometer.restore(odometer)
+            if robot.belief is not None and belief is not None:
+                robot.belief.restore(belief)
         for name, (is_shut, shuts_s) in kept.doors.items():
             self._doors[name].is_shut, self._doors[name].shuts_s = is_shut, shuts_s
         self.bystanders = [Bystander(FloorPose(*each)) for each in kept.bystanders]

@@ -33,6 +33,9 @@ class BuildingBench:
         shut_doors: float = 0.0,
         wrong_floors: float = 0.0,
         seed: int = 1,
+        localizer: str = "exact",
+        unmapped: float = 0.0,
+        carried_every_s: float = 0.0,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
         setup = WorldSetup(
@@ -40,7 +43,13 @@ class BuildingBench:
             scene=self.scene,
             seed=seed,
             speed=None,
-            options={"shut_doors": shut_doors, "wrong_floors": wrong_floors},
+            options={
+                "shut_doors": shut_doors,
+                "wrong_floors": wrong_floors,
+                "localizer": localizer,
+                "unmapped": unmapped,
+                "carried_every_s": carried_every_s,
+            },
         )
         self.group: SharedWorld = BUILDINGS.create_agents(setup)
         self.world: BuildingWorld = self.group.world  # type: ignore[assignment]

@@ -80,3 +80,37 @@ async def test_the_published_plan_asks_rides_notices_the_wrong_floor_and_arrives
     assert "wrong_floor" in issues
     resolved = [each for each in events if isinstance(each, ev.Resolved)]
     assert all(each.resolution == "robot_finish" and each.helped for each in resolved)
+
+
+@pytest.mark.slow
+async def test_a_robot_that_is_carried_asks_where_it_is_and_goes_on(tmp_path: Path) -> None:
+    scene = scene_of(Building(random_building(7, 1, 6)), "office", 1)
+    settings = Settings(port=0, data_dir=tmp_path, log_level="error", speech_voice="none")
+    tree = {
+        "name": "rounds",
+        "scene": "office",
+        "tree": {"and": [{"behavior": "go_to", "place": f"F1-10{each}"} for each in range(1, 7)]},
+    }
+    async with open_service(settings) as service, asyncio.timeout(PATIENCE_S):
+        await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
+        await service.library.trees.save("rounds", json.dumps(tree))
+        request = RunRequest(
+            tree="rounds",
+            world="building",
+            speed="max",
+            seed=3,
+            answers=["yes"] * 20,
+            person=Person(acts=True),
+            world_options={"shut_doors": 0.0, "unmapped": 0.33, "carried_every_s": 12.0},
+        )
+        run = await service.runtime.start_run(request)
+        view = await service.runtime.wait_for_end(run.id)
+        events = list(await service.journal.read(0, 100_000, run.id))
+    assert view.status is RunStatus.FINISHED, view.result
+    asked = [each.text for each in events if isinstance(each, ev.Prompt) and each.kind == "ask"]
+    assert any("I do not know where I am." in each and "Am I " in each for each in asked), asked
+    told = [
+        each for each in events if isinstance(each, ev.HelpVerified) and each.help == "tell_place"
+    ]
+    assert told
+    assert all(each.change == "told" for each in told)

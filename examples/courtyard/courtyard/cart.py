@@ -58,6 +58,10 @@ class Cart:
         ranges = ranges_m((self.place.x, self.place.y), _BEAMS + self.place.yaw, self._around(self))
         return RangeScan(ranges, _BEAMS, self.time_s())
 
+    def odometry(self) -> BasePose:
+        """As true as all that it knows."""
+        return self.pose()
+
     def velocity(self) -> Velocity:
         return self._now
 

@@ -54,7 +54,13 @@ class Driving:
     def _drive_on(self, drive: Drive, headway: Headway) -> None:
         """Drive while there is a way; stand still before what leaves none."""
         progress, base = self._progress, self._base
+        if base.jumps():
+            self._begin(drive)
+            if base.following is None:
+                return
         base.drive_on()
+        if base.whereabouts.is_lost:
+            return
         following = base.following
         assert following is not None, "it drives"
         if not following.barred:

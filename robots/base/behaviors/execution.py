@@ -68,8 +68,14 @@ class BaseExecution(Execution[BaseProgress]):
         progress = self._progress
         progress.step, progress.blocked_since_s, progress.wait = BEFORE_FIRST_STEP, None, None
         self._watch.check()
+        yield from self._find_out()
         if self._done == 0 and self._is_there():
             return True
+        last = progress.steps[-1] if progress.steps else None
+        done = self._done == len(progress.steps)
+        if done and isinstance(last, Drive) and not self._driving.is_at(last.to):
+            # It was elsewhere than it had thought.
+            self._done -= 1
         progress.move_to(ExecutionState.RUNNING)
         for number in range(self._done + 1, len(progress.steps) + 1):
             progress.step = number
@@ -80,7 +86,14 @@ class BaseExecution(Execution[BaseProgress]):
             self._done = number
         progress.move_to(ExecutionState.CONFIRMING)
         self._watch.check()
+        yield from self._find_out()
         return False
+
+    def _find_out(self) -> Routine[None]:
+        """Stand while it does not know where it is: it cannot say that it is there."""
+        while self._base.whereabouts.is_lost:
+            self._watch.check_if_due()
+            yield
 
     def _is_there(self) -> bool:
         """Whether it is where all of its steps lead."""

@@ -40,7 +40,9 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
         """Let the monitors of this step judge. Raises `Interruption` for the first that must."""
         progress, now = self._progress, self._base.body.time_s()
         taken, since_s = progress.taken, progress.blocked_since_s
-        barrier = self._base.barrier()
+        whereabouts = self._base.whereabouts
+        # Who is lost knows neither of doors nor of ways.
+        barrier = None if whereabouts.is_lost else self._base.barrier()
         self.show(
             BaseView(
                 time_s=now,
@@ -52,8 +54,10 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
                 door=None if barrier is None else barrier.door,
                 waited_s=0.0 if since_s is None else now - since_s,
                 stalled_s=progress.stalled_s,
-                no_way=progress.no_way,
+                no_way=None if whereabouts.is_lost else progress.no_way,
                 elevator=self._elevator(now),
+                lost_s=whereabouts.lost_s,
+                guesses=whereabouts.guesses,
                 scan=self._base.body.scan(),
             )
         )

@@ -1,5 +1,6 @@
 """What a fault monitor of a base is, and all that it may look at."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, TypeVar
 
@@ -35,7 +36,9 @@ class BaseView(MonitorView):
     `in_the_way_m` is how far what leaves it no way on is from its rim, None where it gets on or
     round, and `door` what its map calls that, if it is a door; `waited_s` how long it has stood
     before it. `stalled_s`: how long it has come no nearer, although nothing bars its way. `no_way`:
-    why it knows no way to the goal. `elevator`: what it waits for, if that is one.
+    why it knows no way to the goal. `elevator`: what it waits for, if that is one. `lost_s`: how
+    long it has not known where it is; `guesses` says where it may be then, likeliest first (`at
+    F1-101`).
     """
 
     pose: BasePose
@@ -47,6 +50,8 @@ class BaseView(MonitorView):
     no_way: str | None
     elevator: AwaitedElevator | None
     scan: RangeScan
+    lost_s: float = 0.0
+    guesses: Callable[[], Sequence[str]] = tuple
 
 
 class BaseMonitor(Monitor[P, BaseView]):

@@ -49,9 +49,20 @@ class Seen:
         """What does not move."""
         return cls(points, np.zeros(len(points)))
 
+    def with_still(self, points: Points) -> "Seen":
+        """What does not move, besides."""
+        return Seen(
+            np.concatenate([self.points, points]),
+            np.concatenate([self.speeds_m_s, np.zeros(len(points))]),
+        )
+
     def in_frame_of(self, pose: BasePose) -> "Seen":
         """As a base has it that is at a pose."""
         return Seen(in_frame_of(self.points, pose), self.speeds_m_s)
+
+    def seen_from(self, pose: BasePose) -> "Seen":
+        """What a base sees that is at a pose, in the frame that the pose is in."""
+        return Seen(out_of_frame_of(self.points, pose), self.speeds_m_s)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,13 +85,6 @@ class _Placed:
         sees_m = np.where((after < len(angles)) | closed, beside, np.nan)
         return np.hypot(*offset.T), sees_m
 
-    def hides(self, points: Points) -> Points:
-        """Those near points that something seen stands before."""
-        if not len(points):
-            return points
-        away_m, sees_m = self.range_m(points)
-        return points[(away_m < _NEAR_M) & (sees_m < away_m - _KNOWN_BEHIND_M)]
-
 
 class Surroundings:
     """Takes scan after scan; what stands still is where it was, however far the base drove.
@@ -96,11 +100,8 @@ class Surroundings:
         self.seen = Seen.still(self._hidden)
         """In the frame of the poses."""
 
-    def take(self, scan: RangeScan, here: BasePose, time_s: float, known: Points = NOTHING) -> Seen:
-        """Called in every control cycle, with the newest scan and where the base is now.
-
-        `known` (n, 2) is what a map has there: it counts where something hides it.
-        """
+    def take(self, scan: RangeScan, here: BasePose, time_s: float) -> Seen:
+        """Called in every control cycle, with the newest scan and where the base is now."""
         self._poses.append((time_s, here))
         if not self._placed or scan is not self._placed[-1].scan:
             at = min(self._poses, key=lambda each: abs(each[0] - scan.time))[1]
@@ -109,11 +110,7 @@ class Surroundings:
             self._remember(placed)
             self._still = speeds_m_s == 0.0
             self._placed.append(placed)
-            hidden = np.concatenate([self._hidden, placed.hides(known)])
-            self.seen = Seen(
-                np.concatenate([placed.points, hidden]),
-                np.concatenate([speeds_m_s, np.zeros(len(hidden))]),
-            )
+            self.seen = Seen(placed.points, speeds_m_s).with_still(self._hidden)
         return self.seen
 
     def _speeds_m_s(self, now: _Placed) -> NDArray[np.float64]:
@@ -172,6 +169,14 @@ def _beside(points: Points, now: _Placed) -> NDArray[np.bool_]:
     return np.asarray(marked[at[:, 0], at[:, 1]])
 
 
+def hidden_behind(scan: RangeScan, here: BasePose, known: Points) -> Points:
+    """Those of some near points (n, 2) that a map has, before which something is seen."""
+    if not len(known):
+        return known
+    away_m, sees_m = _Placed(scan, here, NOTHING).range_m(known)
+    return known[(away_m < _NEAR_M) & (sees_m < away_m - _KNOWN_BEHIND_M)]
+
+
 def points_of(scan: RangeScan, at: BasePose) -> Points:
     """What a scan shows (n, 2) that was made at a pose, in the pose's frame.
 
@@ -206,6 +211,13 @@ def _between(hits: Points, beams: NDArray[np.intp]) -> Points:
 
 def _cross(a: Points, b: Points) -> NDArray[np.float64]:
     return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+
+
+def out_of_frame_of(points: Points, pose: BasePose) -> Points:
+    """Points (n, 2) that a base has that is at a pose, in the frame that the pose is in."""
+    cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
+    x, y = points[:, 0], points[:, 1]
+    return np.column_stack([pose.x + cos * x - sin * y, pose.y + sin * x + cos * y])
 
 
 def in_frame_of(points: Points, pose: BasePose) -> Points:

@@ -52,7 +52,7 @@ class WayFollower:
         """`way` is all of it, from where the base is; poses and points are in one frame."""
         self._window = DynamicWindow(limits, radius_m, period_s)
         self._limits, self._radius_m = limits, radius_m
-        self._way, self._goal = Polyline(way), goal
+        self._way, self.goal = Polyline(way), goal
         self._along_m = 0.0
         self._before: BasePose | None = None
         self._at_end = False
@@ -131,7 +131,7 @@ class WayFollower:
     def _steering(self, here: BasePose, now: Velocity, points: Points) -> Steering:
         off_m = math.dist((here.x, here.y), self._way.end)
         self._at_end = off_m <= (_STILL_THERE_M if self._at_end else _THERE_M)
-        turn_rad = math.remainder(self._goal.yaw - here.yaw, math.tau)
+        turn_rad = math.remainder(self.goal.yaw - here.yaw, math.tau)
         if self._at_end:
             self.left_m, self.barred = off_m, False
             return Steering(None, turn_rad)

@@ -11,6 +11,7 @@ const SENTENCES: Readonly<Record<string, (part: string) => string>> = {
   missing: (part) => `The robot looked for the ${part} and cannot see it anywhere.`,
   undone: (part) => `The ${part} is not at its place.`,
   blind: () => "The robot's head camera does not see the table.",
+  lost: () => "The robot does not know where it is.",
   blocked: () => "Something is in the way of the robot's arm.",
 };
 

@@ -13,6 +13,7 @@ const PROMISES: Readonly<Record<Help, (part: string) => string>> = {
   hand_over: (part) => `would hand over the ${part}`,
   clear_way: () => "would clear the way",
   clear_view: () => "would clear the view of the head camera",
+  tell_place: () => "know where it is",
 };
 
 const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
@@ -21,6 +22,7 @@ const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
   hand_over: (part) => `The robot watches for the ${part} between its fingers, and then grips it.`,
   clear_way: () => "The robot watches until nothing is in the way of its arm.",
   clear_view: () => "The robot watches until its head camera sees the table.",
+  tell_place: () => "The robot looks whether what its laser sees agrees with that.",
 };
 
 /** A base sees with its laser, and has no arm. */
