@@ -17,6 +17,8 @@ from mend.robots.base.whereabouts import AlwaysKnown, Whereabouts
 from mend.robots.execution.effector import Effector
 
 _SLOW_M_S, _SLOW_RAD_S = 0.05, 0.1
+_SEES_OUT = 0.05
+"""More of its beams lead out of an open cabin than fail to come back."""
 _BEHIND_M = 0.2
 """A door is so near to where the laser sees it, by the map."""
 
@@ -120,7 +122,8 @@ class Base(Effector[BaseBody]):
 
     def sees_out(self) -> bool:
         """Whether it sees farther than the walls of a cabin in which it would be."""
-        return bool((self.body.scan().ranges_m > 2 * CABIN_M).any())
+        out = self.body.scan().ranges_m > 2 * CABIN_M
+        return float(out.mean()) > _SEES_OUT
 
     def gets_to(self, to: BasePose) -> bool:
         """Whether what is seen leaves a way on to a pose. Raises `CommandError`.

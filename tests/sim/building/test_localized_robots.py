@@ -126,7 +126,7 @@ def test_another_floor_is_entered_where_the_last_one_was_left() -> None:
     bench = BuildingBench(scene, localizer="enml")
     robot = bench.world.robots[0]
     before = robot.pose()
-    robot.ride_to("F2")
+    robot.get_out_at("F2", (0.0, 0.0))
     assert robot.at.floor == "F2"
     after = robot.pose()
     assert (after.x, after.y, after.yaw) == pytest.approx((before.x, before.y, before.yaw))

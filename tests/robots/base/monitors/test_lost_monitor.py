@@ -22,6 +22,7 @@ def view(lost_s: float, *guesses: str) -> BaseView:
         waited_s=0.0,
         stalled_s=0.0,
         no_way=None,
+        elevator=None,
         scan=SCAN,
         lost_s=lost_s,
         guesses=lambda: guesses,
