@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -138,3 +139,17 @@ def test_nobody_stands_in_a_wall_or_in_a_robot() -> None:
         bench.world.bystanders.clear()
     assert "" in answers
     assert bench.world.touches == 0
+
+
+def test_a_shut_door_is_still_shut_for_who_stands_beside_the_lane() -> None:
+    bench = BuildingBench(scene_of(made_up(1, 6, 7), "office", 2), shut_doors=1.0, unmapped=0.2)
+    bench.go("robot1", "F1-101")
+    bench.run_until(IssueDetected)
+    bench.run()
+    robot = bench.world.robots[0]
+    at = robot.at
+    for aside_m in (-0.3, 0.0, 0.3):
+        robot.stand(replace(at, x=at.x + aside_m))
+        bench.send("robot1", Look(expect="way_clear", within_s=1.0))
+        bench.run()
+        assert bench.of(Looked)[-1].fulfilled is False
