@@ -91,3 +91,16 @@ def test_nobody_leaves_the_lanes_through_a_gap_that_is_too_narrow() -> None:
     document = document_of("gap", floor)
     here, to = BasePose(1.0, 0.0, 0.0), BasePose(3.0, 3.0, 0.0)
     assert (4.0, 0.0) in FloorWays(Building(document), Frame(), 1.0, 0.3).path(here, to)
+
+
+@pytest.mark.parametrize("quarters", range(4))
+def test_walls_around_a_pose_are_known_also_where_nothing_is_seen(quarters: int) -> None:
+    floor = {"walls": [[0.0, 1.0, 3.0, 1.0], [20.0, 0.0, 20.0, 9.0]]}
+    frame = Frame(2.0, -1.0, quarters=quarters)
+    ways = FloorWays(Building(document_of("hut", floor)), frame, 1.0, 0.3)
+    here = BasePose(*frame.to_robot(1.0, 0.0), 0.4)
+    walls = np.array([frame.to_scene(x, y) for x, y in ways.walls_near(here).tolist()])
+    assert np.allclose(walls[:, 1], 1.0)
+    assert np.all(np.diff(np.sort(walls[:, 0])) <= 0.15 + 1e-9)
+    assert walls[:, 0].min() == pytest.approx(0.0)
+    assert walls[:, 0].max() == pytest.approx(3.0)

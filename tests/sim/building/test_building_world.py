@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -141,3 +142,17 @@ def test_robots_show_on_which_floor_they_are() -> None:
     shown = [each.poses().base[2] for each in bench.group.agents]
     assert shown == [each.z for each in scene.robots.values()]
     assert shown[0] != shown[1]
+
+
+def test_a_shut_door_is_still_shut_for_who_stands_beside_the_lane() -> None:
+    bench = BuildingBench(scene_of(made_up(1, 6, 7), "office", 2), shut_doors=1.0, unmapped=0.2)
+    bench.go("robot1", "F1-101")
+    bench.run_until(IssueDetected)
+    bench.run()
+    robot = bench.world.robots[0]
+    at = robot.at
+    for aside_m in (-0.3, 0.0, 0.3):
+        robot.stand(replace(at, x=at.x + aside_m))
+        bench.send("robot1", Look(expect="way_clear", within_s=1.0))
+        bench.run()
+        assert bench.of(Looked)[-1].fulfilled is False
