@@ -162,6 +162,13 @@ def test_a_building_is_rebuilt_in_the_middle_of_a_ride() -> None:
         bench.group.advance(0.05)
     snapshot = json.loads(json.dumps(bench.group.snapshot()))
     again = BUILDINGS.create_agents(
-        WorldSetup(robots=["robot1"], scene=scene, seed=1, speed=None, snapshot=snapshot)
+        WorldSetup(
+            robots=["robot1"],
+            scene=scene,
+            seed=1,
+            speed=None,
+            snapshot=snapshot,
+            options={"localizer": "exact", "unmapped": 0.0},
+        )
     )
     assert again.snapshot() == snapshot
