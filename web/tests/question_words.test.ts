@@ -35,6 +35,7 @@ describe("a detection on a picture", () => {
     part: null,
     probability: null,
     explanation: "",
+    guesses: [],
   };
 
   it("is scaled to the picture, which may be an enlarged one", () => {
