@@ -170,6 +170,8 @@ def _out_of_reach(
 def _why_not(ways: FloorWays, here: BasePose, to: BasePose) -> str | None:
     try:
         for ride in ways.rides(here, to):
+            if ride.wait_at is not None:
+                ways.path(here, ride.wait_at)
             here = ride.there
         ways.path(here, to)
     except CommandError as error:

@@ -56,6 +56,8 @@ class BaseExecution(Execution[BaseProgress]):
     @property
     def fraction(self) -> float:
         following = self._base.following
+        if self._progress.wait is not None:
+            return 0.0
         if following is None or following.length_m <= NEAR_M:
             return 1.0
         return min(max(0.0, 1.0 - following.left_m / following.length_m), 1.0)

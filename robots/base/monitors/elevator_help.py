@@ -12,10 +12,7 @@ from mend.robots.link.messages import LASER, Detection
 
 
 class ElevatorPatience(StrictModel):
-    """It asks people to call an elevator after `asks_s`, and doubts one that does not come.
-
-    That is after `doubts_s`.
-    """
+    """It asks people to call an elevator after `asks_s`; after `doubts_s` it asks in any case."""
 
     asks_s: Annotated[float, Field(gt=0.0, le=600.0)] = 2.0
     doubts_s: Annotated[float, Field(gt=0.0, le=3600.0)] = 240.0
@@ -44,7 +41,7 @@ class ElevatorHelp(BaseMonitor[ElevatorPatience]):
                 return f"I need {ride.elevator} to get from {ride.from_floor} to {ride.to_floor}"
             if awaited.aboard and awaited.is_open and not awaited.was_shut:
                 return f"I am in {ride.elevator}, and need to get to {ride.to_floor}"
-        if waited_s >= self.settings.doubts_s and not awaited.is_open:
-            does = "opened" if awaited.aboard else "come"
-            return f"{ride.elevator} has not {does} for {waited_s:.0f} s"
+        if waited_s >= self.settings.doubts_s:
+            where = "in" if awaited.aboard else "for"
+            return f"I have waited {where} {ride.elevator} for {waited_s:.0f} s"
         return None

@@ -7,7 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from mend.maps.building.building import Building, BuildingDocument
+from mend.maps.building.building import Building, BuildingDocument, FloorPlace
+from mend.maps.building.clearance import distances_m
 from mend.maps.building.crossing import crossed_by
 from mend.maps.building.random_building import random_building
 from mend.robots.base.body import BasePose
@@ -99,8 +100,52 @@ def test_walls_around_a_pose_are_known_also_where_nothing_is_seen(quarters: int)
     frame = Frame(2.0, -1.0, quarters=quarters)
     ways = FloorWays(Building(document_of("hut", floor)), frame, 1.0, 0.3)
     here = BasePose(*frame.to_robot(1.0, 0.0), 0.4)
-    walls = np.array([frame.to_scene(x, y) for x, y in ways.walls_near(here).tolist()])
+    walls = np.array([frame.to_scene(x, y) for x, y in ways.walls(here).tolist()])
     assert np.allclose(walls[:, 1], 1.0)
     assert np.all(np.diff(np.sort(walls[:, 0])) <= 0.15 + 1e-9)
     assert walls[:, 0].min() == pytest.approx(0.0)
     assert walls[:, 0].max() == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_rides_lead_from_floor_to_floor_and_end_where_the_place_is(seed: int) -> None:
+    building = Building(random_building(seed, 4, 10))
+    frame = Frame(3.0, -1.0, quarters=seed % 4)
+    ways = FloorWays(building, frame, 1.0, 0.3, turn=seed)
+    low, high = building.floors["F1"], building.floors["F4"]
+    here = pose_of(frame, low.places["101"], low.height)
+    to = pose_of(frame, high.places["402"], high.height)
+    rides = ways.rides(here, to)
+    assert [(each.from_floor, each.to_floor) for each in rides] == [("F1", "F4")]
+    (ride,) = rides
+    assert ride.wait_at is not None
+    assert ways.path(here, ride.wait_at)
+    assert ways.path(ride.there, to)
+    assert ways.floor(ride.there) == "F4"
+    assert ride.wait_at.distance_m(ride.inside) > 0.9
+    assert not ways.rides(here, pose_of(frame, low.places["102"], low.height))
+
+
+def test_who_is_in_a_cabin_does_not_wait_for_it() -> None:
+    building = Building(random_building(2, 3, 6))
+    ways = FloorWays(building, Frame(), 1.0, 0.3)
+    floors = building.floors
+    inside = pose_of(Frame(), floors["F2"].places["lift1"], floors["F2"].height)
+    (ride,) = ways.rides(inside, pose_of(Frame(), floors["F1"].places["101"], 0.0))
+    assert ride.wait_at is None
+
+
+def test_the_walls_around_a_pose_are_known_and_a_cabin_has_a_name() -> None:
+    building = Building(random_building(2, 2, 6))
+    ways = FloorWays(building, Frame(), 1.0, 0.3)
+    stop = building.floors["F1"].places["lift1"]
+    near = ways.walls(BasePose(stop.x, stop.y, 0.0))
+    walls = building.floors["F1"].wall_segments
+    assert len(near)
+    assert distances_m(near, walls).max() < 1e-9
+    assert np.abs(near - (stop.x, stop.y)).max() < 6.0
+    assert ways.door_at(BasePose(stop.x, stop.y, 0.0), (stop.x + 0.9, stop.y)) == "lift1"
+
+
+def pose_of(frame: Frame, place: FloorPlace, height_m: float) -> BasePose:
+    return BasePose(*frame.to_robot(place.x, place.y), 0.0, height_m)
