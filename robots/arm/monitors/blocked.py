@@ -45,7 +45,11 @@ class Blocked(ArmMonitor[BlockedParameters]):
 
     issue: ClassVar[str] = "blocked"
     behaviors: ClassVar[frozenset[str]] = frozenset({PickAndPlace.name})
-    phases: ClassVar[frozenset[Phase]] = frozenset(Phase) - {Phase.TRAVEL, Phase.CONFIRM}
+    phases: ClassVar[frozenset[Phase]] = frozenset(Phase) - {
+        Phase.TRAVEL,
+        Phase.RIDE,
+        Phase.CONFIRM,
+    }
     reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
     camera: ClassVar[str | None] = "head"
     parameters: ClassVar[type[StrictModel]] = BlockedParameters
