@@ -137,7 +137,7 @@ async def begin_rounds(
         scenario=scenario,
         answers="live",
         person=Person(acts=False),
-        world_options={"shut_doors": shut_doors},
+        world_options={"shut_doors": shut_doors, "localizer": "exact", "unmapped": 0.0},
     )
     return (await service.runtime.start_run(request)).id
 

@@ -39,7 +39,7 @@ async def test_shut_doors_are_asked_about_and_the_rooms_are_reached(tmp_path: Pa
             seed=2,
             answers=["yes"] * 6,
             person=Person(acts=True),
-            world_options={"shut_doors": 1.0},
+            world_options={"shut_doors": 1.0, "localizer": "exact"},
         )
         run = await service.runtime.start_run(request)
         view = await service.runtime.wait_for_end(run.id)
