@@ -113,9 +113,9 @@ IN_THE_WAY = {
 }
 
 
-async def keep_office(service: Service) -> None:
+async def keep_office(service: Service, drawn: int = 8) -> None:
     """Have an office with two floors and a robot on each, and a task there."""
-    scene = scene_of(Building(random_building(7, 2, 6)), "office", 2)
+    scene = scene_of(Building(random_building(drawn, 2, 6)), "office", 2)
     await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
     await service.library.trees.save("rounds", json.dumps(ROUNDS))
     await service.library.scenarios.save("in_the_way", json.dumps(IN_THE_WAY))
@@ -126,9 +126,10 @@ async def begin_rounds(
     speed: float | Literal["max"] = 1.0,
     shut_doors: float = 0.0,
     scenario: str | None = None,
+    drawn: int = 8,
 ) -> UUID:
     """Start a run of two robots in an office, one on each of its floors."""
-    await keep_office(service)
+    await keep_office(service, drawn)
     request = RunRequest(
         tree="rounds",
         world="building",

@@ -101,7 +101,7 @@ async def test_plan_is_moved_and_zoomed_with_keys_and_shows_a_robot(
 async def test_question_shows_where_the_robot_is_that_asks(
     service: Service, open_page: OpenPage
 ) -> None:
-    run = await begin_rounds(service, scenario="in_the_way")
+    run = await begin_rounds(service, scenario="in_the_way", drawn=7)
     page = await open_page(f"/runs/{run}", viewport=WIDE)
     robots = page.get_by_role("list", name="Robots")
     await expect(page.get_by_role("button", name="YES")).to_be_visible(timeout=LONG_MS)
