@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from mend.maps.building.building import ON_FLOOR_M
 from mend.robots.base.base import Base
 from mend.robots.base.behaviors.behavior import Drive
 from mend.robots.base.behaviors.progress import BaseProgress
@@ -14,7 +15,6 @@ from mend.robots.execution.routine import Routine
 NEAR_M = 0.05
 TURNED_RAD = 0.09
 """A base is where it was to go when it is so near and turned no farther."""
-_ON_FLOOR_M = 0.5
 
 
 class Driving:
@@ -26,7 +26,7 @@ class Driving:
     def is_at(self, goal: BasePose) -> bool:
         """Whether the base is where it was to go."""
         here = self._base.body.pose()
-        near = here.distance_m(goal) <= NEAR_M and abs(here.z - goal.z) < _ON_FLOOR_M
+        near = here.distance_m(goal) <= NEAR_M and abs(here.z - goal.z) < ON_FLOOR_M
         return near and here.turned_by_rad(goal) <= TURNED_RAD
 
     def take(self, drive: Drive, no_more: Callable[[], bool] = lambda: False) -> Routine[None]:
