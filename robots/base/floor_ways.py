@@ -90,6 +90,15 @@ class FloorWays:
         inside = math.dist(start, self._frame.to_scene(first.inside.x, first.inside.y))
         return [replace(first, wait_at=None) if inside < CABIN_M else first, *rides[1:]]
 
+    def way_out(self, here: BasePose) -> BasePose | None:
+        """Where to get out of the cabin that a pose is in; None where that is in none."""
+        floor, at = self._building.floor_at(here.z), self._on_map(here)
+        for name, stop in self._cabins:
+            if name == floor and math.dist(stop, at) < CABIN_M:
+                out = self._outside(name, stop)
+                return self._pose(name, out, out)
+        return None
+
     def floor(self, pose: BasePose) -> str | None:
         """What the floor of a pose is called; None between floors."""
         return self._building.floor_at(pose.z)

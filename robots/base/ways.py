@@ -44,6 +44,10 @@ class Ways(Protocol):
         """
         ...
 
+    def way_out(self, here: BasePose) -> BasePose | None:
+        """Where to get out of the cabin that a pose is in; None where that is in none."""
+        ...
+
     def floor(self, pose: BasePose) -> str | None:
         """What the floor of a pose is called; None where there is none."""
         ...
@@ -67,6 +71,10 @@ class StraightWays:
     def rides(self, here: BasePose, to: BasePose) -> Sequence[Ride]:  # noqa: ARG002
         """None: it knows one floor."""
         return ()
+
+    def way_out(self, here: BasePose) -> BasePose | None:  # noqa: ARG002
+        """None: it knows of no cabins."""
+        return None
 
     def floor(self, pose: BasePose) -> str | None:  # noqa: ARG002
         """It has no name."""

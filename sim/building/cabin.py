@@ -110,6 +110,9 @@ class Cabin:
             self._hold_open(served, time_s, inside, door_is_free=door_is_free)
         elif served is not None:
             self._go(self._next_floor(served, inside), time_s)
+        elif inside:
+            # Whoever is in it wants nothing any more.
+            self._open(time_s)
         return False
 
     # --- Within -------------------------------------------------------------------------------

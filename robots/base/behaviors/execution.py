@@ -116,6 +116,8 @@ class BaseExecution(Execution[BaseProgress]):
                 yield from self._riding.ride(step)
 
     def _go_to_rest(self) -> Routine[None]:
-        """A base rests where it stands."""
+        """A base rests where it stands, but in no cabin."""
         self._base.elevators.withdraw()
+        yield from self._base.settle()
+        yield from self._riding.get_out(rides=isinstance(self._progress.taken, RideUntilThere))
         yield from self._base.settle()

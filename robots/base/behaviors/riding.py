@@ -11,6 +11,8 @@ from mend.robots.base.behaviors.watch import BaseWatch
 from mend.robots.base.ways import Ride
 from mend.robots.execution.routine import Routine
 
+_GETS_OUT_S = 60.0
+
 
 class Riding:
     """Takes the steps of rides, and lets the monitors watch."""
@@ -36,6 +38,24 @@ class Riding:
     def ride(self, step: RideUntilThere) -> Routine[None]:
         """Stay until the cabin is open at the floor where the ride ends. Raises `Interruption`."""
         yield from self._await(step.ride, aboard=True, until=lambda: self.is_over(step.ride))
+
+    def get_out(self, *, rides: bool) -> Routine[None]:
+        """Leave the cabin in which it is, if any: nobody else could ride.
+
+        Who `rides` waits until that is open. Who is not out in `_GETS_OUT_S` stays.
+        """
+        base = self._base
+        until_s = base.body.time_s() + _GETS_OUT_S
+        while rides and not base.sees_out() and base.body.time_s() < until_s:
+            yield
+        out = base.ways.way_out(base.body.pose())
+        if out is None or not base.sees_out():
+            return
+        base.start(out, 1.0)
+        while not self._driving.is_at(out) and base.body.time_s() < until_s:
+            base.drive_on()
+            yield
+        base.stop()
 
     def is_over(self, ride: Ride) -> bool:
         """Whether the cabin is open at the floor where a ride ends."""

@@ -80,6 +80,17 @@ def test_who_does_not_get_in_is_not_waited_for_for_ever() -> None:
     assert shaft.cabin.is_open_at("F3")
 
 
+def test_it_opens_for_who_is_in_it_and_wants_nothing_any_more() -> None:
+    shaft = Shaft(cabin_of())
+    shaft.cabin.call(7, "F1", "F3")
+    shaft.until_open_at("F1")
+    shaft.inside = [7]
+    while shaft.cabin.state is not CabinState.SHUT:
+        shaft.wait(STEP_S)
+    shaft.cabin.withdraw(7)
+    shaft.until_open_at("F1")
+
+
 def test_who_is_in_it_goes_first() -> None:
     shaft = Shaft(cabin_of())
     shaft.cabin.call(8, "F2", "F1")

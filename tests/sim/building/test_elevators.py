@@ -136,7 +136,20 @@ def test_who_gives_up_wants_the_elevator_no_more() -> None:
     assert bench.world.intervene(PRESS) == "nothing is in the way of any robot"
 
 
-def test_who_is_left_in_a_cabin_gets_out_or_rides_on() -> None:
+def test_who_gives_up_in_a_cabin_gets_out_of_it() -> None:
+    bench = BuildingBench(office(Caller.ROBOTS, floors=3))
+    bench.go("robot1", "F3-301")
+    while not any(each.name == "ride to F3" for each in bench.of(StepStarted)):
+        bench.group.advance(0.5)
+    bench.send("robot1", Interrupt(retreat=True))
+    bench.run()
+    at, elevators = bench.world.robots[0].at, bench.world.elevators
+    assert not elevators.is_in_a_cabin(at.floor, at.x, at.y, 0.25)
+    assert at.floor in bench.world.building.floors
+    assert bench.world.touches == 0
+
+
+def test_who_gave_up_in_a_cabin_goes_on_from_where_it_got_out() -> None:
     bench = BuildingBench(office(Caller.ROBOTS, floors=3))
     bench.go("robot1", "F3-301")
     while bench.world.elevators.cabins["lift1"].state is not CabinState.MOVING or not any(
@@ -145,8 +158,6 @@ def test_who_is_left_in_a_cabin_gets_out_or_rides_on() -> None:
         bench.group.advance(0.5)
     bench.send("robot1", Interrupt(retreat=True))
     bench.run()
-    while bench.world.elevators.cabins["lift1"].state is not CabinState.OPEN:
-        bench.world.advance_cycle()
     bench.go("robot1", "F2-201")
     bench.run()
     assert bench.of(Finished)
