@@ -47,7 +47,7 @@ screenshots: console  ## The console's pictures in docs/images, from situations 
 
 test: console  ## Every test, in random order; one in a browser that fails is run once more
 	@# The kernels and the tests are compiled once here, not by many processes at a time.
-	$(MAKE) --no-print-directory -j -O arm-kernels fleet-kernels
+	$(MAKE) --no-print-directory -j -O arm-kernels building-kernels fleet-kernels
 	$(MAKE) --no-print-directory -j -O console-tests test-modules
 	@command -v chromium google-chrome >/dev/null || echo 'There is no Chromium on this machine: the tests in a browser are skipped.'
 	$(BIN)/python scripts/run_tests.py
@@ -58,7 +58,7 @@ console-tests:
 test-modules:
 	@told=$$($(BIN)/pytest --collect-only -q) || { tail -20 <<<"$$told"; exit 1; }
 
-# Vision, kinematics, drawing and localization.
+# Vision, kinematics and drawing, and localization.
 arm-kernels:
 	$(BIN)/mend check tasks/library/eket.yaml --world workcell
 	$(BIN)/mend run eket --world tabletop --speed max --seed 1 --answers yes >/dev/null
@@ -66,6 +66,11 @@ arm-kernels:
 	    $(BIN)/mend localize examples/localization/drive.csv --method "$$method" \
 	        --map examples/localization/floor.vectormap.txt >/dev/null; \
 	done
+
+# Laser, driving, and localization within.
+building-kernels:
+	$(BIN)/mend run examples/buildings/conditional_plan.yaml --world building --speed max --seed 1 \
+	    --answers yes >/dev/null
 
 fleet-kernels:
 	$(BIN)/mend schedule examples/deliveries/corridor.yaml >/dev/null

@@ -21,7 +21,8 @@ _NONE: Mapping[str, JsonValue] = {}
 class NodeTable:
     """Names, shape and leaves of a tree. Nodes are added depth first; `close` completes it.
 
-    `behaviors` and `objects` are each listed once: a node has their index, its code.
+    `behaviors`, `objects` and `places` are each listed once: a node has their index, its code.
+    `places` are those of leaves that handle no object.
     """
 
     def __init__(self) -> None:
@@ -29,12 +30,15 @@ class NodeTable:
         self.names: list[str] = []
         self.behaviors: list[str] = []
         self.objects: list[str] = []
+        self.places: list[str] = []
         self._parameters: list[Mapping[str, JsonValue]] = []
         self._behavior_codes = array("q")
         self._object_codes = array("q")
+        self._place_codes = array("q")
         self._known_names: set[str] = set()
         self._known_behaviors: dict[str, int] = {}
         self._known_objects: dict[str, int] = {}
+        self._known_places: dict[str, int] = {}
 
     @classmethod
     def of(cls, definition: TaskTreeDefinition) -> "NodeTable":
@@ -54,23 +58,16 @@ class NodeTable:
         self.names.append(node.name)
         if isinstance(node, GoalNode):
             self._parameters.append(_NONE)
-            self._behavior_codes.append(NO_CODE)
-            self._object_codes.append(NO_CODE)
+            for codes in (self._behavior_codes, self._object_codes, self._place_codes):
+                codes.append(NO_CODE)
             return
         # Made anew, item by item: the collector of garbage then never looks through a dict of plain
         # values, but it does through one that a library has made, and its copies.
         self._parameters.append({key: value for key, value in node.parameters.items()})  # noqa: C416
-        code = self._known_behaviors.setdefault(node.behavior, len(self.behaviors))
-        if code == len(self.behaviors):
-            self.behaviors.append(node.behavior)
-        self._behavior_codes.append(code)
-        self._object_codes.append(NO_CODE if node.object is None else self._add_object(node.object))
-
-    def _add_object(self, name: str) -> int:
-        code = self._known_objects.setdefault(name, len(self.objects))
-        if code == len(self.objects):
-            self.objects.append(name)
-        return code
+        place = node.place if node.object is None else None
+        self._behavior_codes.append(_code(node.behavior, self.behaviors, self._known_behaviors))
+        self._object_codes.append(_code(node.object, self.objects, self._known_objects))
+        self._place_codes.append(_code(place, self.places, self._known_places))
 
     def object_code(self, name: str) -> int:
         """The code of an object; `NO_CODE` for one that no leaf handles."""
@@ -120,3 +117,18 @@ class NodeTable:
     def object_codes(self) -> NDArray[np.int64]:
         """Of every node; `NO_CODE` for goal nodes and for leaves without an object."""
         return np.frombuffer(self._object_codes, dtype=np.int64)
+
+    @property
+    def place_codes(self) -> NDArray[np.int64]:
+        """Of every node; `NO_CODE` for all but leaves with a place and without an object."""
+        return np.frombuffer(self._place_codes, dtype=np.int64)
+
+
+def _code(name: str | None, listed: list[str], known: dict[str, int]) -> int:
+    """The index of a name in a list, to which it is added where it is new."""
+    if name is None:
+        return NO_CODE
+    code = known.setdefault(name, len(listed))
+    if code == len(listed):
+        listed.append(name)
+    return code

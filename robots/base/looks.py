@@ -13,7 +13,7 @@ _PERIOD_S = 0.5
 def answer(base: Base, command: str, fulfilled: bool | None) -> Looked:
     """Where the base is; it sees no objects, and judges no results."""
     here = base.body.pose()
-    at = Position(x=here.x, y=here.y, z=0.0)
+    at = Position(x=here.x, y=here.y, z=here.z)
     return Looked(command=command, objects={}, gripper=at, fulfilled=fulfilled)
 
 

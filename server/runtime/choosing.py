@@ -41,10 +41,12 @@ def suitabilities(
 def potentials_for(
     state: RunState, proxy: RobotProxy, leaves: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """The activation potential of each leaf for a robot, from where it last saw the objects."""
+    """The activation potential of each leaf for a robot: how near objects and places are."""
     last_seen = {name: (each.x, each.y, each.z) for name, each in proxy.seen.items()}
     suitable = suitabilities(state, proxy, leaves)
-    return leaf_potentials(state.tree.nodes, leaves, last_seen, proxy.gripper, suitable)
+    return leaf_potentials(
+        state.tree.nodes, leaves, last_seen, proxy.gripper, suitable, state.places
+    )
 
 
 def able_mask(state: RunState, proxy: RobotProxy, leaves: NDArray[np.int64]) -> NDArray[np.bool_]:

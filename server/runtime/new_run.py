@@ -1,6 +1,6 @@
 """From a request to the event that begins a run."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from uuid import UUID, uuid4
@@ -12,6 +12,7 @@ from mend.server.runtime.journaled_tree import read_nodes
 from mend.server.runtime.ports import LIVE, Preparation, PreparedRun, SiteOffer, Worlds
 from mend.server.runtime.requests import RunRequest, WorldOption
 from mend.server.runtime.standing import stand
+from mend.tasks.definition import TaskTreeDefinition
 from mend.tasks.frames import frames_of
 from mend.tasks.node_table import NodeTable
 from mend.tasks.scene import Scene
@@ -45,7 +46,9 @@ class NewRuns:
         """Raises `NotFoundError` or `WrongInputError`."""
         _refuse_too_much(request, self._limits)
         if request.site is not None:
-            return await self._at_site(request, request.site, author)
+            request, offer = self._offered(request, request.site)
+            prepared = await self._preparation.prepare(request, offer.scene)
+            return await self._begun(uuid4(), request, prepared, offer.robots, author)
         if request.world == LIVE:
             if request.world_options:
                 raise WrongInputError("'world_options' is for simulated worlds; 'live' has none")
@@ -63,8 +66,18 @@ class NewRuns:
             robots, scene = robot_names(prepared.scene, run), prepared.scene
         return await self._begun(run, request, replace(prepared, scene=scene), robots, author)
 
-    async def _at_site(self, request: RunRequest, site: UUID, author: ev.Author | None) -> NewRun:
-        """A run where there is a world already, with robots in it."""
+    async def make_of(self, run: UUID, request: RunRequest, tree: TaskTreeDefinition) -> NewRun:
+        """A run at a site of a tree that is no document; `run` is its id.
+
+        Raises `NotFoundError`, `WrongInputError`, or `ConflictError` where a run has its robots.
+        """
+        assert request.site is not None, "only where there are robots already"
+        request, offer = self._offered(request, request.site)
+        prepared = PreparedRun(tree.name, tree.model_dump_json(), offer.scene)
+        return await self._begun(run, request, prepared, offer.robots, None)
+
+    def _offered(self, request: RunRequest, site: UUID) -> tuple[RunRequest, SiteOffer]:
+        """The request with what a site says: there is a world already, with robots in it."""
         if isinstance(request.robots, dict):
             raise WrongInputError(
                 "'robots' says who stands where, but those of a site stand where they are: list "
@@ -73,16 +86,14 @@ class NewRuns:
         offer = self._worlds.offer(site, request.robots)
         _refuse_what_the_site_says(request, offer)
         there = {"world": offer.world, "seed": offer.seed, "speed": offer.speed}
-        request = request.model_copy(update={**there, "robots": offer.robots})
-        prepared = await self._preparation.prepare(request, offer.scene)
-        return await self._begun(uuid4(), request, prepared, offer.robots, author)
+        return request.model_copy(update={**there, "robots": offer.robots}), offer
 
     async def _begun(
         self,
         run: UUID,
         request: RunRequest,
         prepared: PreparedRun,
-        robots: list[str],
+        robots: Sequence[str],
         author: ev.Author | None,
     ) -> NewRun:
         started = ev.RunStarted(
@@ -93,7 +104,7 @@ class NewRuns:
             tree={},
             scene=prepared.scene.model_dump(mode="json"),
             world=request.world,
-            robots=robots,
+            robots=list(robots),
             seed=request.seed,
             speed=request.speed,
             scenario=request.scenario,

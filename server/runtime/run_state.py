@@ -55,6 +55,8 @@ class RunState:
         self.started = started
         self.request = RunRequest.model_validate(started.options)
         self.scene = Scene.model_validate(started.scene, strict=False)
+        at = {name: each.pose for name, each in self.scene.places.items()}
+        self.places = {name: (each.x, each.y, each.z or 0.0) for name, each in at.items()}
         self.tree = TaskTree(nodes or TaskTreeDefinition.model_validate(started.tree))
         self.tree.running = True
         self.status = RunStatus.RUNNING

@@ -3,7 +3,7 @@
 import asyncio
 import logging
 from array import array
-from collections.abc import Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping
 from datetime import datetime
 from functools import partial
 from itertools import islice
@@ -52,6 +52,7 @@ from mend.server.runtime.views import (
     RunView,
     Snapshot,
 )
+from mend.tasks.definition import TaskTreeDefinition
 from mend.tasks.intervention import Intervention
 from mend.tasks.scenario import Person, Scenario
 from mend.tasks.scene import Scene
@@ -142,8 +143,22 @@ class Runtime:
 
     async def start_run(self, request: RunRequest, author: ev.Author | None = None) -> RunSummary:
         """Begin a run. Raises `NotFoundError`, `WrongInputError` or `ConflictError`."""
+        return await self._start(lambda: self._new_runs.make(request, author))
+
+    async def start_run_of(
+        self, run: UUID, request: RunRequest, tree: TaskTreeDefinition
+    ) -> RunSummary:
+        """Begin a run at a site of a tree that is no document; once only for each id.
+
+        Raises `NotFoundError`, `WrongInputError` or `ConflictError`.
+        """
+        if await self._journal.index.find(run) is not None:
+            return await self.run_summary(run)
+        return await self._start(lambda: self._new_runs.make_of(run, request, tree))
+
+    async def _start(self, make: Callable[[], Awaitable[NewRun]]) -> RunSummary:
         self._refuse_one_too_many()
-        new = await self._new_runs.make(request, author)
+        new = await make()
         if self._closing:
             raise BusyError("the service is shutting down")
         # Others may have begun meanwhile.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from uuid import UUID
 
 from mend.errors import ConflictError
-from mend.robots.link.messages import Hello, Holding, Poses, Report
+from mend.robots.link.messages import Held, Hello, Holding, Poses, Report
 from mend.server.journal.journal import Entry, Journal, Receipt
 from mend.server.robots.registry import RobotRegistry
 from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
@@ -53,6 +53,9 @@ class Site:
         self._runs: dict[UUID, Run] = {}
         self.forgotten = False
         """Whether its world's state is kept no more, as it is being closed."""
+        self.changed: Callable[[], None] = lambda: None
+        """Told when a robot has come, when a run has given robots back, and when time has passed
+        for which somebody had waited."""
         self._restarts = 0
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -67,6 +70,23 @@ class Site:
     def run_of(self, robot: str) -> UUID | None:
         """Which run has a robot."""
         return next((run for run, each in self._runs.items() if robot in each.proxies), None)
+
+    def free_robots(self) -> list[str]:
+        """The robots that no run has and that rest here, connected."""
+        return [each for each, proxy in self._resting.items() if proxy.doing is RobotActivity.IDLE]
+
+    def let_time_pass(self, until_s: float, rate: float | None) -> bool:
+        """Have the world's clock run until then, also where no run has a robot.
+
+        `rate`: simulated seconds per second, None as fast as possible. False if nobody is free to
+        wait for that.
+        """
+        waiting = RobotActivity.IDLE, RobotActivity.WAITING
+        for proxy in self._resting.values():
+            if proxy.doing in waiting:
+                proxy.hold(until_s, rate)
+                return True
+        return False
 
     # --- Its world ----------------------------------------------------------------------------
 
@@ -129,6 +149,7 @@ class Site:
             # What it was about for a run is over; until it rests it has its space.
             proxy.area = area
             proxy.retreat()
+        self.changed()
 
     async def robot_reported(self, robot: str, report: Report, receipt: Receipt) -> None:
         """Keep what a robot reports that comes to rest."""
@@ -138,9 +159,14 @@ class Site:
         entry = Entry(receipt=receipt, world_run=None if world is None else self.id, world=world)
         await self._journal.append(entry, patient=True)
         proxy = self._resting.get(robot)
-        if proxy is not None and isinstance(report.body, Holding):
+        if proxy is None:
+            return
+        if isinstance(report.body, Holding):
             proxy.hold_execution(report.body)
             self.tell_neighbours(None)
+        if isinstance(report.body, Held) and report.body.command == proxy.command:
+            proxy.doing = RobotActivity.IDLE
+        self.changed()
 
     def robot_posed(self, robot: str, poses: Poses) -> None:
         """Nobody watches a robot that no run has."""
@@ -175,6 +201,7 @@ class Site:
             resting.hello, resting.area = proxy.hello, proxy.area
             self._resting[robot] = resting
         self.tell_neighbours(run)
+        self.changed()
 
     def require_free(self, robots: Sequence[str]) -> None:
         """Raises `ConflictError` where a run has one of these robots."""
