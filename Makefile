@@ -8,7 +8,7 @@ READY := $(VENV)/.ready
 # Much is done by processes that begin anew: each would compile every module once more.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup demo types console screenshots serve test console-tests arm-kernels fleet-kernels test-modules steady lint bench lock sbom clean
+.PHONY: help setup demo types console screenshots serve test console-tests arm-kernels building-kernels fleet-kernels test-modules steady lint bench lock sbom clean
 
 help:  ## Say what there is
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 10
