@@ -18,7 +18,6 @@ from mend.documents.strict_model import StrictModel
 from mend.documents.validation import describe_mistake
 from mend.errors import WrongInputError
 from mend.fleet.scheduling.problem import Item, Visit, Window
-from mend.maps.building.building import Name as PlaceName
 from mend.tasks.transitions import Transitions
 
 LAST_S = 1e8
@@ -26,6 +25,7 @@ LAST_S = 1e8
 
 RequestName = Annotated[str, Field(pattern=NAME)]
 Text = Annotated[str, Field(min_length=1, max_length=500, pattern=SEEN_CHARACTERS)]
+PlaceName = Annotated[str, Field(min_length=1, max_length=129, pattern=SEEN_CHARACTERS)]
 Moment = Annotated[float, Field(ge=0.0, le=LAST_S, allow_inf_nan=False)]
 Stay = Annotated[float, Field(ge=0.0, le=3600.0, allow_inf_nan=False)]
 Load = Annotated[float, Field(ge=0.0, le=1e6, allow_inf_nan=False)]

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from math import ceil, inf
 
-from mend.errors import ConflictError, NotFoundError, WrongInputError
+from mend.errors import ConflictError, NotFoundError, UnreadableError, WrongInputError
 from mend.fleet.dispatch.booking import (
     Answer,
     AnyRequest,
@@ -18,11 +18,14 @@ from mend.fleet.dispatch.booking import (
     RequestView,
     Series,
 )
+from mend.fleet.dispatch.fleet_snapshot import snapshot_of, state_of
 from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd, LegOutcome
 from mend.fleet.dispatch.next_possible import bounded, next_possible
 from mend.fleet.dispatch.plan_log import PlanLog
 from mend.fleet.dispatch.setting import FleetSetting
+from mend.fleet.dispatch.snapshot import DispatcherSnapshot, KeptBooking, KeptChange, KeptSeries
 from mend.fleet.requests import LegAction, RequestStatus, Terms
+from mend.fleet.scheduling.checker import ScheduleError
 from mend.fleet.scheduling.problem import Item, Problem, Robot, Transfers, Weights, Window
 from mend.fleet.scheduling.replanning.events import (
     Cancelled,
@@ -45,7 +48,8 @@ from mend.fleet.scheduling.replanning.events import (
 from mend.fleet.scheduling.replanning.item_state import ItemState, TrackedItem
 from mend.fleet.scheduling.replanning.live_plan import NextStop
 from mend.fleet.scheduling.replanning.open_ways import OpenWays
-from mend.fleet.scheduling.replanning.running_fleet import Outcome, RunningFleet
+from mend.fleet.scheduling.replanning.residual_problem import Building as KeptBuilding
+from mend.fleet.scheduling.replanning.running_fleet import RunningFleet
 from mend.fleet.scheduling.schedule import Action
 from mend.fleet.scheduling.travel import TravelError
 from mend.maps.building.building import Building
@@ -68,6 +72,43 @@ class Dispatcher:
         problem = self._problem()
         self._fleet = RunningFleet(problem, ways=self._ways, observed=True)
         self._fleet.advance(now_s)
+
+    @classmethod
+    def restored(
+        cls, building: Building, setting: FleetSetting, snapshot: DispatcherSnapshot
+    ) -> "Dispatcher":
+        """A dispatcher equal to the one whose snapshot it was.
+
+        Raises `UnreadableError` where the building or its robots are others now.
+        """
+        dispatcher = cls.__new__(cls)
+        dispatcher._begin(building, setting)
+        problem = dispatcher._problem()
+        about = KeptBuilding(problem.name, problem.places, problem.transfers, problem.weights)
+        try:
+            state = state_of(snapshot.fleet, about, problem.robots, dispatcher._ways)
+            dispatcher._fleet = RunningFleet.resumed(state)
+        except (EventError, ScheduleError) as error:
+            raise UnreadableError(f"what was kept does not fit the building: {error}") from error
+        dispatcher._bookings = {each.name: each.booking() for each in snapshot.bookings}
+        dispatcher._series = {each.request.name: each.series() for each in snapshot.series}
+        dispatcher._under_way = {each.robot: each for each in snapshot.under_way}
+        dispatcher._begun, dispatcher._tried_s = dict(snapshot.begun), snapshot.tried_s
+        dispatcher._log.restore((each.change() for each in snapshot.changes), snapshot.change_count)
+        return dispatcher
+
+    def snapshot(self) -> DispatcherSnapshot:
+        """All that is known, to be kept; `restored` makes an equal dispatcher of it."""
+        return DispatcherSnapshot(
+            fleet=snapshot_of(self._fleet.state()),
+            bookings=tuple(KeptBooking.of(each) for each in self._bookings.values()),
+            series=tuple(KeptSeries.of(each) for each in self._series.values()),
+            under_way=tuple(self._under_way.values()),
+            begun=dict(self._begun),
+            tried_s=self._tried_s,
+            changes=tuple(KeptChange.of(each) for each in self._log.changes),
+            change_count=self._log.count,
+        )
 
     def _begin(self, building: Building, setting: FleetSetting) -> None:
         self.building, self.setting, self.policy = building, setting, setting.policy
@@ -160,7 +201,7 @@ class Dispatcher:
         self._advance(now_s)
         if name in self._series or request.recurrence is not None:
             raise ConflictError(
-                f"the request '{name}' recurs: change one of its occurrences, or cancel it and ask anew"
+                f"the request '{name}' recurs: change one occurrence, or cancel it and ask anew"
             )
         if request.name != name.split("/", 1)[0]:
             raise WrongInputError(
@@ -170,22 +211,15 @@ class Dispatcher:
             self.building.find(place)
         booking = self._open_booking(name)
         if booking.status not in (RequestStatus.BOOKED, RequestStatus.WAITING):
-            raise ConflictError(
-                f"the request '{name}' is {booking.status}; it is too late to change it"
-            )
-        trial = self._fleet.fork()
-        trial.apply(Cancelled(name), trial.now_s)
-        trial.forget_closed()
-        item = self._item(name, request)
-        refused = self._refusal(trial, item)
-        if refused is not None:
-            return refused
-        with self._log.entry(self._fleet, f"'{name}' is wanted otherwise", {name}):
-            trial.apply(NewItem(item), trial.now_s)
-            self._fleet = trial
-        booking.request, booking.attempts, booking.reason = request, 0, None
-        self._settle()
-        return Answer(True, self.expected(name))
+            raise ConflictError(f"the request '{name}' is {booking.status}: too late to change it")
+        without = self._fleet.fork()
+        without.apply(Cancelled(name), without.now_s)
+        without.forget_closed()
+        answer = self._take_on(without, self._item(name, request), f"'{name}' is wanted otherwise")
+        if answer is None:
+            booking.request, booking.attempts, booking.reason = request, 0, None
+            self._settle()
+        return answer or Answer(True, self.expected(name))
 
     # --- what robots do ---------------------------------------------------------------------------
 
@@ -237,7 +271,12 @@ class Dispatcher:
         self._advance(now_s)
         self._require_under_way(leg)
         at = leg.place if end.at is None else self.building.find(end.at)
-        if end.outcome is LegOutcome.DONE and self._is_possible(leg):
+        lost = end.outcome is LegOutcome.ITEM_LOST and self._fleet.items[leg.booking].under_way
+        if lost:
+            why = f"it was gone when {leg.robot} was to {leg.action} it: {end.reason or 'lost'}"
+            self._free(leg, at, self._fleet.now_s, f"{leg.robot} does not have '{leg.booking}'")
+            self._lose(self._bookings[leg.booking], why)
+        elif end.outcome is LegOutcome.DONE and self._is_possible(leg):
             closes = leg.request.is_visit
             what = f"{leg.robot} is done with '{leg.booking}' at {leg.place}"
             self._apply(StopMade(leg.robot, closes), what, set(), own=leg.booking)
@@ -349,8 +388,12 @@ class Dispatcher:
 
     def wakes_s(self) -> float | None:
         """When `legs_to_begin` has to be asked again, if nothing happens before."""
+        robots = self._fleet.robots
         times = [
-            self._fleet.leaves_s(robot, stops[0]) - self.policy.reserve_s
+            max(
+                robots[robot].free_s,
+                self._fleet.leaves_s(robot, stops[0]) - self.policy.reserve_s,
+            )
             for robot, stops in self._fleet.stops().items()
             if stops and self._may_set_out(robot, stops[0])
         ]
@@ -393,27 +436,31 @@ class Dispatcher:
     def _book(self, name: str, request: AnyRequest) -> Answer:
         if name in self._fleet.items:
             self._fleet.forget_closed()
-        item, booking = self._item(name, request), Booking(name, request)
-        answer = self._refusal(self._fleet, item)
+        booking = Booking(name, request)
+        answer = self._take_on(self._fleet, self._item(name, request), f"'{name}' is asked for")
         self._bookings.pop(name, None)
         self._bookings[name] = booking
         if answer is not None:
             booking.status, booking.reason = RequestStatus.REFUSED, answer.why
             booking.closed_s = self._fleet.now_s
             return answer
-        self._apply(NewItem(item), f"'{name}' is asked for", {name})
         self._settle()
         return Answer(True, self.expected(name))
 
-    def _refusal(self, fleet: RunningFleet, item: Item) -> Answer | None:
-        """Why a fleet has no place for an item, and when it would; None where it has."""
+    def _take_on(self, fleet: RunningFleet, item: Item, why: str) -> Answer | None:
+        """Go on as that fleet with one more item. Where it has no place, stay as it is, and say why
+        and when it would have one."""
+        trial, policy = fleet.fork(), self.policy
         with _refusing():
-            why = fleet.fork().apply(NewItem(item), fleet.now_s).refused.get(item.name)
-        if why is None:
+            outcome = trial.apply(NewItem(item), trial.now_s)
+        refused = outcome.refused.get(item.name)
+        if refused is None:
+            with self._log.entry(lambda: self._fleet, why, {item.name}) as outcomes:
+                outcomes.append(outcome)
+                self._fleet = trial
             return None
-        policy = self.policy
         window = next_possible(fleet, item, longest_s=policy.longest_s, grace_s=policy.grace_s)
-        return Answer(False, None, why, window)
+        return Answer(False, None, refused, window)
 
     def _cancel(self, booking: Booking) -> None:
         item = self._fleet.items[booking.name]
@@ -442,7 +489,8 @@ class Dispatcher:
     def _due_leg(self, robot: str, stops: Sequence[NextStop]) -> Leg | None:
         if not stops or not self._may_set_out(robot, stops[0]):
             return None
-        if self._fleet.leaves_s(robot, stops[0]) - self.policy.reserve_s > self._fleet.now_s:
+        now_s, free_s = self._fleet.now_s, self._fleet.robots[robot].free_s
+        if max(free_s, self._fleet.leaves_s(robot, stops[0]) - self.policy.reserve_s) > now_s:
             return None
         return self._leg(robot, stops[0])
 
@@ -493,9 +541,7 @@ class Dispatcher:
         if item is None or not (item.open or item.withdrawn):
             return False
         if leg.action is LegAction.TAKE and item.state is not ItemState.LEFT:
-            raise ConflictError(
-                f"'{leg.booking}' cannot be taken: nobody has left it at {leg.place}"
-            )
+            raise ConflictError(f"'{leg.booking}' cannot be taken: it was not left at {leg.place}")
         return True
 
     def _free(self, leg: Leg, at: str, again_s: float | None, why: str) -> None:
@@ -508,17 +554,12 @@ class Dispatcher:
         said = f"{what}: {end.reason or end.outcome}"
         booking.reason, waits = said, item.state is ItemState.WAITING
         now_s = self._fleet.now_s
-        if end.outcome is LegOutcome.ITEM_LOST and not waits:
-            self._free(leg, at, now_s, said)
-            self._lose(booking, said)
-            return
         booking.attempts += 1
         again_s = now_s + self.policy.retry_after_s
+        goes_on = end.outcome is not LegOutcome.ITEM_LOST
         if waits and again_s > item.item.pickup.window.latest_s:
             booking.reason = f"{said}; there is no time to try it again"
-        elif (
-            booking.attempts < self.policy.max_attempts and end.outcome is not LegOutcome.ITEM_LOST
-        ):
+        elif goes_on and booking.attempts < self.policy.max_attempts:
             self._free(leg, at, again_s, f"{said}; it is tried again at {again_s:g} s")
             return
         booking.fails = True
@@ -537,7 +578,11 @@ class Dispatcher:
             self._apply(Cancelled(name), why, {name})
             booking.attempts = 0
             return
-        where = self._where(item)
+        self._strand(booking, why)
+
+    def _strand(self, booking: Booking, why: str) -> None:
+        """No robot does any more: a thing stays where it is, a person is on their own."""
+        where, name = self._where(self._fleet.items[booking.name]), booking.name
         self._apply(Stranded(name), why, {name})
         if booking.request.comes_back:
             booking.reason = f"{booking.reason or why}; it is {where}, for a person to take it"
@@ -556,7 +601,7 @@ class Dispatcher:
         """Let time pass; what waits is tried again, and given up where its time is over."""
         if not self._fleet.now_s - IN_TIME_S <= now_s < inf:
             raise WrongInputError(f"it is {self._fleet.now_s:g} s already, not {now_s:g} s")
-        with self._log.entry(self._fleet, "what was planned is late", set()) as outcomes:
+        with self._log.entry(lambda: self._fleet, "what was planned is late", ()) as outcomes:
             outcomes.append(self._fleet.advance(now_s))
         waiting = any(each.put_off_since_s is not None for each in self._bookings.values())
         if waiting and self._fleet.now_s >= self._tried_s + self.policy.retry_waiting_s:
@@ -578,14 +623,8 @@ class Dispatcher:
             return
         booking.fails = True
         if item.under_way:
-            item_was, booking.reason = self._where(item), item.put_off
-            self._apply(
-                Stranded(booking.name), f"nobody can bring '{booking.name}'", {booking.name}
-            )
-            if booking.request.comes_back:
-                booking.reason = f"{booking.reason}; it is {item_was}, for a person to take it"
-            else:
-                self._apply(Fetched(booking.name), "its person is on their own", {booking.name})
+            booking.reason = item.put_off
+            self._strand(booking, f"nobody can bring '{booking.name}'")
         else:
             self._give_up(booking, f"nobody had a place for '{booking.name}' in time")
         self._settle()
@@ -593,20 +632,32 @@ class Dispatcher:
     def _forget(self) -> None:
         if sum(not each.open for each in self._fleet.items.values()) >= CLOSED_ITEMS:
             self._fleet.forget_closed()
-        closed = [name for name, each in self._bookings.items() if not each.open]
+        closed = [
+            name
+            for name, each in self._bookings.items()
+            if not each.open and not self._is_stranded(name)
+        ]
         for name in closed[: max(0, len(closed) - self.policy.kept)]:
             del self._bookings[name]
+        for name in [name for name, each in self._series.items() if each.over]:
+            if not self._occurrences(name):
+                del self._series[name]
+
+    def _is_stranded(self, name: str) -> bool:
+        item = self._fleet.items.get(name)
+        return item is not None and item.state is ItemState.STRANDED
 
     # --- one event --------------------------------------------------------------------------------
 
     def _apply(
         self, event: Event, why: str, requests: Iterable[str], *, own: str | None = None
-    ) -> Outcome:
+    ) -> None:
         """Let the fleet know; `own`: what goes on as planned with that event."""
-        with _refusing(), self._log.entry(self._fleet, why, requests, own=own) as outcomes:
-            outcome = self._fleet.apply(event, self._fleet.now_s)
-            outcomes.append(outcome)
-        return outcome
+        with (
+            _refusing(),
+            self._log.entry(lambda: self._fleet, why, requests, own=own) as outcomes,
+        ):
+            outcomes.append(self._fleet.apply(event, self._fleet.now_s))
 
     def _settle(self) -> None:
         """Let every open booking follow its item."""

@@ -4,8 +4,7 @@ from enum import StrEnum
 
 from mend.documents.strict_model import StrictModel
 from mend.fleet.dispatch.setting import RobotName
-from mend.fleet.requests import LegAction, Moment, Request, Text
-from mend.maps.building.building import Name as PlaceName
+from mend.fleet.requests import LegAction, Moment, PlaceName, Request, Text
 
 
 class Leg(StrictModel):

@@ -1,7 +1,7 @@
 """Why the plan of a fleet became another one, and whom that touches."""
 
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
 from mend.fleet.dispatch.booking import PlanChange
@@ -31,7 +31,7 @@ class PlanLog:
     @contextmanager
     def entry(
         self,
-        fleet: RunningFleet,
+        fleet: Callable[[], RunningFleet],
         reason: str,
         requests: Iterable[str],
         *,
@@ -41,21 +41,21 @@ class PlanLog:
 
         `requests`: whom it touches in any case; `own`: what merely goes on.
         """
-        before = _orders(fleet, own)
+        before = _orders(fleet(), own)
         outcomes: list[Outcome] = []
         yield outcomes
-        after = _orders(fleet, own)
+        after = _orders(fleet(), own)
         said: dict[str, str] = {}
         for each in outcomes:
             for sentences in (each.late, each.refused, each.put_off, each.overtime):
                 said.update(sentences)
         robots = sorted(name for name in before if before[name] != after.get(name))
-        touched = {*requests, *said.keys() & fleet.items.keys()}
+        touched = {*requests, *said.keys() & fleet().items.keys()}
         touched |= set(_moved(before, after))
         if robots or said or touched:
             self.count += 1
             change = PlanChange(
-                self.count, fleet.now_s, reason, tuple(sorted(touched)), tuple(robots), said
+                self.count, fleet().now_s, reason, tuple(sorted(touched)), tuple(robots), said
             )
             self._changes.append(change)
 

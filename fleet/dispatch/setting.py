@@ -7,8 +7,7 @@ from pydantic import Field
 
 from mend.documents.spellings import NAME
 from mend.documents.strict_model import StrictModel
-from mend.fleet.requests import LAST_S, Moment
-from mend.maps.building.building import Name as PlaceName
+from mend.fleet.requests import LAST_S, Moment, PlaceName
 from mend.maps.building.building import Speed
 
 RobotName = Annotated[str, Field(pattern=NAME)]

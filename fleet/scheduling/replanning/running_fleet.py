@@ -149,11 +149,9 @@ class RunningFleet:
         """When a robot has to leave, at the latest, to begin its next stop as planned."""
         state, robot = self._state, self.robots[name]
         from_s, place = robot.available_s(state.now_s), state.place_number(stop.place)
-        lasts_s = (
-            state.travel.trip(robot.place, place, from_s, robot.robot.speed).arrival_s - from_s
-        )
-        later_s = stop.begin_s - lasts_s
-        arrival_s = state.travel.trip(robot.place, place, later_s, robot.robot.speed).arrival_s
+        speed = robot.robot.speed
+        later_s = stop.begin_s - state.travel.shortest_lasting_s(robot.place, place, from_s, speed)
+        arrival_s = state.travel.trip(robot.place, place, later_s, speed).arrival_s
         return max(from_s, later_s) if arrival_s <= stop.begin_s + CHECK_S else from_s
 
     def closed_until_s(self) -> Mapping[frozenset[str], float]:
