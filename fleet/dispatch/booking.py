@@ -48,7 +48,9 @@ class Booking:
             since_s = self.put_off_since_s
             self.reason, self.put_off_since_s = item.put_off, now_s if since_s is None else since_s
         elif self.put_off_since_s is not None:
-            self.reason = self.put_off_since_s = None
+            goes_on = item.open and not item.returns and not self.fails
+            self.reason = None if goes_on else self.reason
+            self.put_off_since_s = None
         self.become(status, now_s)
 
     def _status(self, item: TrackedItem, about_to: bool) -> RequestStatus:

@@ -185,12 +185,18 @@ class Dispatcher:
         if series is None:
             self._cancel(self._open_booking(name))
             return self.view(name)
-        if series.over:
+        left = [
+            each
+            for each in self._occurrences(name)
+            if each.open
+            and each.status is not RequestStatus.RETURNING
+            and not self._fleet.items[each.name].withdrawn
+        ]
+        if series.over and not left:
             raise ConflictError(f"the request '{name}' is over")
         series.over = True
-        for booking in self._occurrences(name):
-            if booking.open and booking.status is not RequestStatus.RETURNING:
-                self._cancel(booking)
+        for booking in left:
+            self._cancel(booking)
         return None
 
     def change(self, name: str, request: AnyRequest, now_s: float) -> Answer:
@@ -554,8 +560,9 @@ class Dispatcher:
         said = f"{what}: {end.reason or end.outcome}"
         booking.reason, waits = said, item.state is ItemState.WAITING
         now_s = self._fleet.now_s
-        booking.attempts += 1
-        again_s = now_s + self.policy.retry_after_s
+        withdrawn = end.outcome is LegOutcome.WITHDRAWN
+        booking.attempts += not withdrawn
+        again_s = now_s if withdrawn else now_s + self.policy.retry_after_s
         goes_on = end.outcome is not LegOutcome.ITEM_LOST
         if waits and again_s > item.item.pickup.window.latest_s:
             booking.reason = f"{said}; there is no time to try it again"

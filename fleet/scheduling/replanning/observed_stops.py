@@ -103,9 +103,13 @@ def _doing(robot: TrackedRobot) -> Task:
 
 def _is_kept(state: FleetState, number: int) -> bool:
     """Whether the plan still has what the robot set out for as its next stop."""
-    robot, route = state.robots[number], state.routes[number]
-    if robot.doing is None or not robot.held or not route:
+    return state.robots[number].held and does_next(state, number)
+
+
+def does_next(state: FleetState, number: int) -> bool:
+    """Whether what a robot has set out for is what the plan has as its next stop."""
+    doing, route = state.robots[number].doing, state.routes[number]
+    if doing is None or not route:
         return False
-    task, planned = robot.doing, route[0]
-    same = (task.place, task.item) == (planned.place, planned.item)
-    return same and task.action.loads == planned.action.loads
+    same = (doing.place, doing.item) == (route[0].place, route[0].item)
+    return same and doing.action.loads == route[0].action.loads

@@ -48,6 +48,11 @@ class TrackedRobot:
         if self.trip is not None:
             self.trip = replace(self.trip, keeps=False)
 
+    def take_up(self) -> None:
+        """What it is on its way to it is to do after all."""
+        if self.trip is not None:
+            self.trip = replace(self.trip, keeps=True)
+
     def available_s(self, now_s: float) -> float:
         """From when on it can do anything else, but for what it is on its way to."""
         return self.free_s if self.trip else max(self.free_s, now_s)

@@ -430,6 +430,8 @@ class RunningFleet:
         for number, robot in enumerate(residual.robots):
             if not repair.held[number]:
                 state.robots[robot].let_go()
+            if observed_stops.does_next(state, robot):
+                state.robots[robot].take_up()
             if number in repair.overtime:
                 ends_s = repair.problem.robots[number].shift.latest_s
                 state.robots[robot].overtime_until_s = ends_s
