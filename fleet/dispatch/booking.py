@@ -77,6 +77,14 @@ class Series:
     booked: int = 0
     over: bool = False
 
+    def is_missed(self, now_s: float) -> bool:
+        """Whether the time of the next occurrence is over, as nobody was there to book it."""
+        request = self.request.occurrence(self.booked + 1)
+        if request.latest_s is not None:
+            return request.latest_s <= now_s
+        every = self.request.recurrence
+        return every is not None and request.earliest_s + every.every_s <= now_s
+
     def next_name(self) -> str:
         """The name of the next occurrence."""
         return f"{self.request.name}/{self.booked + 1}"
@@ -116,7 +124,10 @@ class RequestView:
 
 @dataclass(frozen=True, slots=True)
 class PlanChange:
-    """Why the plan became another one, and whom that touches; `said`: a sentence by request."""
+    """Why the plan became another one, and whom that touches.
+
+    `said`: by request or robot, a sentence on what cannot be kept.
+    """
 
     number: int
     at_s: float

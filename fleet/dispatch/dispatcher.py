@@ -309,7 +309,10 @@ class Dispatcher:
         self._advance(now_s)
         if name not in self._bookings:
             raise NotFoundError(f"there is no request '{name}'")
-        self._apply(Fetched(name), f"a person took what was to be brought for '{name}'", {name})
+        why = f"a person took what was to be brought for '{name}'"
+        self._apply(Fetched(name), why, {name})
+        if self._bookings[name].open:
+            self._bookings[name].reason = why
         self._settle()
 
     # --- what happens to robots and ways ----------------------------------------------------------
@@ -484,6 +487,9 @@ class Dispatcher:
                     series.over = True
                     break
                 request = series.request.occurrence(series.booked + 1)
+                if series.is_missed(self._fleet.now_s):
+                    series.booked += 1
+                    continue
                 if request.earliest_s > self._fleet.now_s + self.policy.horizon_s:
                     break
                 name = series.next_name()
@@ -622,7 +628,8 @@ class Dispatcher:
 
     def _end_patience(self, booking: Booking) -> None:
         since_s, now_s = booking.put_off_since_s, self._fleet.now_s
-        if since_s is None:
+        # What a robot does with it just now still counts.
+        if since_s is None or any(leg.booking == booking.name for leg in self.legs_under_way()):
             return
         item = self._fleet.items[booking.name]
         over = not item.under_way and item.item.pickup.window.latest_s < now_s
@@ -639,20 +646,16 @@ class Dispatcher:
     def _forget(self) -> None:
         if sum(not each.open for each in self._fleet.items.values()) >= CLOSED_ITEMS:
             self._fleet.forget_closed()
-        closed = [
-            name
-            for name, each in self._bookings.items()
-            if not each.open and not self._is_stranded(name)
-        ]
-        for name in closed[: max(0, len(closed) - self.policy.kept)]:
-            del self._bookings[name]
+        closed = [name for name, each in self._bookings.items() if not each.open]
+        if len(closed) > self.policy.kept:
+            items = self._fleet.items
+            stranded = {n for n, item in items.items() if item.state is ItemState.STRANDED}
+            for name in closed[: len(closed) - self.policy.kept]:
+                if name not in stranded:
+                    del self._bookings[name]
         for name in [name for name, each in self._series.items() if each.over]:
             if not self._occurrences(name):
                 del self._series[name]
-
-    def _is_stranded(self, name: str) -> bool:
-        item = self._fleet.items.get(name)
-        return item is not None and item.state is ItemState.STRANDED
 
     # --- one event --------------------------------------------------------------------------------
 
