@@ -1,6 +1,6 @@
 """What happens to a dispatcher, drawn: requests, failures, closed ways, second thoughts."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from random import Random
 from typing import Any
 
@@ -17,28 +17,45 @@ MIX = {"escort": 3, "go_to_room": 52, "deliver_message": 56, "transport": 29}
 """The published mix of tasks."""
 
 
+THINGS = {"escort": 1, "go_to_room": 1, "deliver_message": 1, "transport": 6}
+"""A mix with more to carry, so that it pays to hand over."""
+
+
 def drawn_fleet(
     seed: int, *, floors: int = 2, rooms: int = 8, robots: int = 3
 ) -> tuple[Building, FleetSetting]:
-    """A drawn building with robots of capacity 2 that may hand over at chargers and elevators."""
+    """A drawn building with robots that carry 1 to 3, and may hand over at some drawn places."""
     building = Building(random_building(seed, floors, rooms))
     chance = Random(seed)
     places = building.of_kind(PlaceKind.ROOM)
-    transfers = building.of_kind(PlaceKind.CHARGER) or places[:1]
+    everywhere = [place.name for place in building.graph.places]
     fleet = tuple(
-        ServiceRobot(name=f"r{number}", start=chance.choice(places), capacity=2.0)
+        ServiceRobot(
+            name=f"r{number}", start=chance.choice(places), capacity=chance.choice((1.0, 2.0, 3.0))
+        )
         for number in range(robots)
     )
-    return building, FleetSetting(robots=fleet, transfer_places=tuple(transfers[:2]))
+    transfers = tuple(chance.sample(everywhere, 6))
+    return building, FleetSetting(robots=fleet, transfer_places=transfers, transfer_s=5.0)
 
 
 class DispatchHappenings:
-    """Draws what happens to a dispatcher and does it; `busy`: so many requests are open at most."""
+    """Draws what happens to a dispatcher and does it.
 
-    def __init__(self, building: Building, chance: Random, *, busy: int = 12) -> None:
+    `busy`: so many requests are open at most; `mix`: how often which kind is asked for.
+    """
+
+    def __init__(
+        self,
+        building: Building,
+        chance: Random,
+        *,
+        busy: int = 12,
+        mix: Mapping[str, int] = MIX,
+    ) -> None:
         self._rooms = building.of_kind(PlaceKind.ROOM)
         self._ways = [(way.a, way.b) for way in building.graph.ways]
-        self._busy, self._chance, self._count = busy, chance, 0
+        self._busy, self._mix, self._chance, self._count = busy, mix, chance, 0
 
     def happen(self, dispatcher: Dispatcher, now_s: float) -> str:
         """Something happens, and what it was; what makes no sense just then is refused."""
@@ -56,7 +73,7 @@ class DispatchHappenings:
         """A request as somebody could make it at a time."""
         chance = self._chance
         self._count += 1
-        kind = chance.choices(list(MIX), weights=list(MIX.values()))[0]
+        kind = chance.choices(list(self._mix), weights=list(self._mix.values()))[0]
         origin, destination = chance.sample(self._rooms, 2)
         earliest_s = now_s + chance.choice((0.0, 0.0, 300.0, 3000.0))
         asked: dict[str, Any] = {"kind": kind, "name": f"q{self._count}", "earliest_s": earliest_s}

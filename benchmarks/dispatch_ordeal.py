@@ -6,7 +6,7 @@ It is killed now and then and goes on from the text of its snapshot.
 from collections import Counter
 from random import Random
 
-from dispatch_happenings import DispatchHappenings, drawn_fleet
+from dispatch_happenings import MIX, THINGS, DispatchHappenings, drawn_fleet
 from dispatch_ledger import DispatchLedger, WitnessedDispatcher
 
 from mend.fleet.dispatch.drawn_execution import DrawnExecution, LegTimes
@@ -41,7 +41,8 @@ class DispatchOrdeal:
         dispatcher = WitnessedDispatcher(self.building, self.setting)
         dispatcher.ledger = self._ledger
         self.execution = DrawnExecution(dispatcher, HARD, Random(seed + 1), watch=self._watch)
-        self._happenings = DispatchHappenings(self.building, Random(seed + 2))
+        mix = THINGS if seed % 2 else MIX
+        self._happenings = DispatchHappenings(self.building, Random(seed + 2), mix=mix)
 
     @property
     def dispatcher(self) -> WitnessedDispatcher:

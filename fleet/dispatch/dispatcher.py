@@ -248,10 +248,9 @@ class Dispatcher:
         """Whether a robot that is at the place of its leg may do there what it is to do."""
         self._advance(now_s)
         self._require_under_way(leg)
-        item = self._fleet.items[leg.booking]
         if now_s < leg.not_before_s - IN_TIME_S:
             return False
-        return leg.action is not LegAction.TAKE or item.state is ItemState.LEFT
+        return leg.action is not LegAction.TAKE or self._fleet.is_there(leg.robot)
 
     def began(self, leg: Leg, now_s: float) -> None:
         """A robot has set out. Raises `ConflictError` where it is not to do that any more."""
@@ -552,7 +551,7 @@ class Dispatcher:
         item = self._fleet.items.get(leg.booking)
         if item is None or not (item.open or item.withdrawn):
             return False
-        if leg.action is LegAction.TAKE and item.state is not ItemState.LEFT:
+        if leg.action is LegAction.TAKE and not self._fleet.is_there(leg.robot):
             raise ConflictError(f"'{leg.booking}' cannot be taken: it was not left at {leg.place}")
         return True
 
@@ -596,8 +595,8 @@ class Dispatcher:
     def _strand(self, booking: Booking, why: str) -> None:
         """No robot does any more: a thing stays where it is, a person is on their own."""
         where, name = self._where(self._fleet.items[booking.name]), booking.name
-        self._apply(Stranded(name), why, {name})
         if booking.request.comes_back:
+            self._apply(Stranded(name), why, {name})
             booking.reason = f"{booking.reason or why}; it is {where}, for a person to take it"
         else:
             self._apply(Fetched(name), why, {name})

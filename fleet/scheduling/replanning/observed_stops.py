@@ -9,8 +9,9 @@ from math import inf
 from mend.fleet.scheduling.replanning.events import EventError
 from mend.fleet.scheduling.replanning.fleet_state import FleetState
 from mend.fleet.scheduling.replanning.item_state import ItemState, ItemStateError
+from mend.fleet.scheduling.replanning.residual_problem import is_given
 from mend.fleet.scheduling.replanning.robot_state import TrackedRobot, Trip
-from mend.fleet.scheduling.schedule import Task
+from mend.fleet.scheduling.schedule import Action, Task
 
 
 def set_out(state: FleetState, number: int) -> None:
@@ -46,6 +47,11 @@ def make(state: FleetState, number: int, closes: bool) -> list[int]:
     item, kept = state.items[task.item], _is_kept(state, number)
     if not task.action.loads and item.robot != number:
         raise EventError(f"robot '{robot.robot.name}' does not have '{item.item.name}' on board")
+    if task.action.loads and not is_there(state, number):
+        place = state.building.places[task.place]
+        raise EventError(
+            f"item '{item.item.name}' was not left at {place}: nobody can take it there"
+        )
     begin_s = state.now_s if robot.begun_s is None else robot.begun_s
     try:
         state.record(number, task, begin_s, state.now_s)
@@ -64,6 +70,23 @@ def make(state: FleetState, number: int, closes: bool) -> list[int]:
         return []
     item.put_off = None
     return [task.item]
+
+
+def is_there(state: FleetState, number: int) -> bool:
+    """Whether what a robot has set out to load lies where it goes, and was given if it is to be.
+
+    What was never picked up is there for all that is known.
+    """
+    robot = state.robots[number]
+    task = _doing(robot)
+    item = state.items[task.item]
+    if task.action is Action.TAKE or item.state is not ItemState.WAITING:
+        if item.state is not ItemState.LEFT or item.place != task.place:
+            return False
+        if _is_kept(state, number):
+            now = state.routes[number][0]
+            return now.action is not Action.TAKE or is_given(state.routes, number, now)
+    return True
 
 
 def fail(state: FleetState, number: int, at: int, again_s: float | None) -> list[int]:

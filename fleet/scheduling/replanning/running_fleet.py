@@ -154,6 +154,13 @@ class RunningFleet:
         arrival_s = state.travel.trip(robot.place, place, later_s, speed).arrival_s
         return max(from_s, later_s) if arrival_s <= stop.begin_s + CHECK_S else from_s
 
+    def is_there(self, name: str) -> bool:
+        """Whether what a robot has set out to load is there for it, as far as is known.
+
+        Raises `EventError` where it has not set out for anything.
+        """
+        return observed_stops.is_there(self._state, self._state.robot_number(name))
+
     def closed_until_s(self) -> Mapping[frozenset[str], float]:
         """The ways that are blocked or closed for now, and until when they count as that."""
         return {} if self._state.ways is None else self._state.ways.closed_until_s

@@ -145,7 +145,7 @@ def test_what_is_taken_has_to_be_given_first() -> None:
     fleet.apply(NewItem(parcel()), 0.0)
     assert stops(fleet, "right")[0] == "take parcel at c"
     happen(fleet, 0.0, SetOut("left"), StopMade("left"), SetOut("left"), SetOut("right"))
-    with pytest.raises(EventError, match="cannot become aboard"):
+    with pytest.raises(EventError, match="was not left at c"):
         happen(fleet, 20.0, StopMade("right"))
     happen(fleet, 20.0, StopMade("left"), StopMade("right"))
     assert fleet.items["parcel"].robot == 1
@@ -201,6 +201,17 @@ def test_what_is_stranded_takes_up_room_until_a_person_takes_it() -> None:
     assert "no robot carries more than 0" in refused["more"]
     happen(fleet, 5.0, Fetched("big"))
     assert not fleet.apply(NewItem(parcel("more")), 5.0).refused
+
+
+def test_what_has_no_room_beside_something_stranded_leaves_the_plan() -> None:
+    fleet = observed(
+        Item("first", 1.0, Visit(0), Visit(4)), Item("second", 2.0, Visit(2), Visit(3))
+    )
+    happen(fleet, 0.0, SetOut("left"), StopMade("left"), RobotFailed("right", at="e"))
+    assert "pick second at c" in stops(fleet, "left")
+    outcome = happen(fleet, 1.0, Stranded("first"))
+    assert "second" in outcome.put_off
+    assert stops(fleet, "left") == []
 
 
 def test_robot_sets_out_for_one_thing_at_a_time() -> None:
