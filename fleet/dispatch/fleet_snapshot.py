@@ -124,7 +124,7 @@ class FleetSnapshot(StrictModel):
     closed: tuple[KeptClosing, ...]
 
 
-def snapshot_of(state: FleetState) -> FleetSnapshot:
+def fleet_snapshot(state: FleetState) -> FleetSnapshot:
     """A state as a document."""
     closed = {} if state.ways is None else state.ways.closed_until_s
     names = state.building.places
