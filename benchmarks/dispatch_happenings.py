@@ -24,14 +24,20 @@ THINGS = {"escort": 1, "go_to_room": 1, "deliver_message": 1, "transport": 6}
 def drawn_fleet(
     seed: int, *, floors: int = 2, rooms: int = 8, robots: int = 3
 ) -> tuple[Building, FleetSetting]:
-    """A drawn building with robots that carry 1 to 3, and may hand over at some drawn places."""
+    """A drawn building with robots that carry 1 to 3, and may hand over at some drawn places.
+
+    The first works always, of the others about every third for two hours.
+    """
     building = Building(random_building(seed, floors, rooms))
     chance = Random(seed)
     places = building.of_kind(PlaceKind.ROOM)
     everywhere = [place.name for place in building.graph.places]
     fleet = tuple(
         ServiceRobot(
-            name=f"r{number}", start=chance.choice(places), capacity=chance.choice((1.0, 2.0, 3.0))
+            name=f"r{number}",
+            start=chance.choice(places),
+            capacity=chance.choice((1.0, 2.0, 3.0)),
+            works_until_s=chance.choice((None, None, 7200.0)) if number else None,
         )
         for number in range(robots)
     )
