@@ -183,7 +183,8 @@ def test_leg_that_is_not_wanted_any_more_does_not_begin() -> None:
         dispatcher.began(leg, 1.0)
 
 
-def test_item_changes_robots_and_is_taken_after_it_was_given() -> None:
+def handing_over() -> Dispatcher:
+    """Tea goes from a to e, and has to change robots at c."""
     setting = fleet_of("a", "e", **HANDS_OVER)
     robots = tuple(
         each.model_copy(update={"works_until_s": until_s})
@@ -191,6 +192,11 @@ def test_item_changes_robots_and_is_taken_after_it_was_given() -> None:
     )
     dispatcher = Dispatcher(office(), setting.model_copy(update={"robots": robots}))
     assert dispatcher.submit(asked(origin="a", destination="e", latest_s=52.0), 0.0).booked
+    return dispatcher
+
+
+def test_item_changes_robots_and_is_taken_after_it_was_given() -> None:
+    dispatcher = handing_over()
     legs = {leg.robot: leg for leg in dispatcher.legs_to_begin(0.0)}
     collect, take = legs["r0"], legs["r1"]
     assert (collect.action, take.action, take.waits_for) == (
@@ -210,6 +216,31 @@ def test_item_changes_robots_and_is_taken_after_it_was_given() -> None:
     dispatcher.ended(take, DONE, 26.0)
     make_leg(dispatcher, 26.0, 22.0)
     assert status(dispatcher) is RequestStatus.DONE
+
+
+def test_robot_goes_on_with_what_it_is_to_do_after_all() -> None:
+    dispatcher = handing_over()
+    for leg in dispatcher.legs_to_begin(0.0):
+        dispatcher.began(leg, 0.0)
+    collect, take = sorted(dispatcher.legs_under_way(), key=lambda leg: leg.robot)
+    assert take in dispatcher.legs_to_withdraw(5.0)
+    dispatcher.ended(collect, DONE, 5.0)
+    assert dispatcher.legs_to_withdraw(5.0) == []
+    assert only_leg(dispatcher, 5.0).action is LegAction.GIVE
+
+
+def test_nobody_goes_for_what_another_robot_still_has_to_let_be() -> None:
+    setting = fleet_of("a", "e")
+    quick = setting.robots[1].model_copy(update={"speed": 10.0})
+    setting = setting.model_copy(update={"robots": (setting.robots[0], quick)})
+    dispatcher = Dispatcher(office(), setting)
+    dispatcher.submit(asked(destination="c", latest_s=60.0), 0.0)
+    leg = only_leg(dispatcher, 0.0)
+    assert leg.robot == "r0"
+    assert dispatcher.legs_to_begin(46.0) == []
+    assert dispatcher.legs_to_withdraw(46.0) == [leg]
+    dispatcher.ended(leg, LegEnd(outcome=LegOutcome.WITHDRAWN), 46.0)
+    assert only_leg(dispatcher, 46.0).robot == "r1"
 
 
 # --- what fails -----------------------------------------------------------------------------------

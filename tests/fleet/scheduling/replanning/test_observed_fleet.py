@@ -20,6 +20,8 @@ from mend.fleet.scheduling.replanning.events import (
 )
 from mend.fleet.scheduling.replanning.item_state import ItemState
 from mend.fleet.scheduling.replanning.running_fleet import Outcome, RunningFleet
+from mend.fleet.scheduling.schedule import Action, Schedule, Task
+from mend.fleet.scheduling.timing import earliest_schedule
 
 TWO = (Robot("left", 0, None, 2.0), Robot("right", 4, None, 2.0))
 ALONE = TWO[:1]
@@ -149,6 +151,27 @@ def test_what_is_taken_has_to_be_given_first() -> None:
         happen(fleet, 20.0, StopMade("right"))
     happen(fleet, 20.0, StopMade("left"), StopMade("right"))
     assert fleet.items["parcel"].robot == 1
+
+
+def test_what_changes_robots_twice_is_taken_where_it_lies() -> None:
+    robots = tuple(
+        Robot(name, place, None, 2.0) for name, place in zip("ghi", (0, 1, 3), strict=True)
+    )
+    problem = corridor(items=(parcel(),), robots=robots, transfers=Transfers((1, 3)))
+    start = (
+        (Task(0, Action.PICK, 0), Task(1, Action.GIVE, 0, 1)),
+        (Task(1, Action.TAKE, 0, 0), Task(3, Action.GIVE, 0, 2)),
+        (Task(3, Action.TAKE, 0, 1), Task(4, Action.DROP, 0)),
+    )
+    schedule = earliest_schedule(problem, start)
+    assert isinstance(schedule, Schedule)
+    fleet = RunningFleet(problem, start=schedule, observed=True)
+    happen(fleet, 0.0, SetOut("g"), StopMade("g"), SetOut("g"), SetOut("h"), SetOut("i"))
+    happen(fleet, 10.0, StopMade("g"))
+    assert fleet.is_there("h")
+    assert not fleet.is_there("i")
+    with pytest.raises(EventError, match="was not left at d"):
+        happen(fleet, 10.0, StopMade("i"))
 
 
 def test_item_cancelled_while_a_robot_goes_for_it_ends_with_that_stop() -> None:
