@@ -161,6 +161,8 @@ def _item(
     yield from _window(f"the delivery of item '{item.name}'", drop, item.delivery.window)
     if not drop.begin_s - loaded_s <= item.max_on_board_s + CHECK_S:
         yield f"item '{item.name}' is on board for {drop.begin_s - loaded_s:g} s, too long"
+    if item.direct and len(legs) > 1:
+        yield f"item '{item.name}' changes robots, which it may not"
     for giving, taking in pairwise(legs):
         assert taking.load is not None, "only the first leg may begin without a load"
         give, take = stop(giving.robot, giving.unload), stop(taking.robot, taking.load)

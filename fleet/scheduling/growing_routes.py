@@ -70,7 +70,7 @@ class GrowingRoutes:
     def bid(self, item: int, *, transfers: bool = True) -> Bid | None:
         """The lowest marginal cost of an item that was found; None where it has no place."""
         direct = self._bid(item, Allowed(0, False, 0.0))
-        if not transfers:
+        if not transfers or self.problem.items[item].direct:
             return direct
         shared = self._bid(item, Allowed(self._arrays.chain, direct is None, 0.0))
         found = [bid for bid in (direct, shared) if bid is not None]

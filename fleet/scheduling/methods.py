@@ -35,6 +35,10 @@ EXACT_SIZE = 2_000_000
 """How large the exact model may be (robots times visits squared times items) to fit in memory."""
 
 
+ALL_CHANGE = frozenset({"exact", "alns", "one_destination"})
+"""Methods that would have any item change robots, also one that is `direct`."""
+
+
 class Solver(Protocol):
     """Finds the best schedule that it can in about `seconds`; never worse than `start`."""
 
@@ -202,7 +206,13 @@ def solve(
     Raises `KeyError` for a name that is none and `UnsupportedError` for a problem that the method
     cannot do.
     """
-    chosen = METHODS[suited_method(problem) if method == "auto" else method]
+    name = suited_method(problem) if method == "auto" else method
+    chosen = METHODS[name]
+    if name in ALL_CHANGE and problem.transfers.places and any(i.direct for i in problem.items):
+        able = ", ".join(sorted(METHODS.keys() - ALL_CHANGE))
+        raise UnsupportedError(
+            f"the method '{name}' cannot plan with items that may not change robots; {able} can"
+        )
     if problem.travel.epochs and not chosen.doors:
         able = ", ".join(name for name, each in METHODS.items() if each.doors)
         raise UnsupportedError(

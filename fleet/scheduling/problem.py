@@ -41,7 +41,7 @@ class Item:
     """One delivery. `aboard`: the robot that already carries it, and `pickup` is then over.
 
     `max_on_board_s` bounds the time between the end of its pickup and the begin of its delivery,
-    transfers included.
+    transfers included. `direct`: it may not change robots.
     """
 
     name: str
@@ -50,6 +50,7 @@ class Item:
     delivery: Visit
     max_on_board_s: float = inf
     aboard: int | None = None
+    direct: bool = False
 
 
 @dataclass(frozen=True, slots=True)

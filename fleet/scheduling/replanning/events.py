@@ -33,10 +33,14 @@ class RobotDelayed:
 
 @dataclass(frozen=True, slots=True)
 class RobotFailed:
-    """A robot stands still; others fetch what it has on board, unless that is `lost`."""
+    """A robot stands still; others fetch what it has on board, unless that is `lost`.
+
+    `at`: the place where it stands; None where nobody knows it better than the plan.
+    """
 
     robot: str
     lost: frozenset[str] = frozenset()
+    at: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +78,65 @@ class TimePassed:
     """Nothing but time has gone by: items that had no place are tried again."""
 
 
+@dataclass(frozen=True, slots=True)
+class SetOut:
+    """A robot leaves for its next stop."""
+
+    robot: str
+
+
+@dataclass(frozen=True, slots=True)
+class StopBegun:
+    """A robot is there and begins with what it has to do at its stop."""
+
+    robot: str
+
+
+@dataclass(frozen=True, slots=True)
+class StopMade:
+    """A robot has done what it had to do at its stop.
+
+    `closes`: the item is dealt with altogether, as a visit is, and nothing is left to deliver.
+    """
+
+    robot: str
+    closes: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class StopFailed:
+    """A robot has not done what it had to do at its stop, and is at the place `at` now.
+
+    It may be tried again from `again_s` on. None: what has not been picked up is not wanted any
+    more, what has been goes back.
+    """
+
+    robot: str
+    at: str
+    again_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class ItemLost:
+    """An item that was on its way is gone."""
+
+    item: str
+
+
+@dataclass(frozen=True, slots=True)
+class Stranded:
+    """No robot brings an item any further: it stays aboard, or where it lies, for a person."""
+
+    item: str
+
+
+@dataclass(frozen=True, slots=True)
+class Fetched:
+    """A person took an item from a robot, or from where it lay, and has it now."""
+
+    item: str
+
+
 Event = (
     NewItem
     | Cancelled
@@ -84,4 +147,11 @@ Event = (
     | DoorClosed
     | WayOpen
     | TimePassed
+    | SetOut
+    | StopBegun
+    | StopMade
+    | StopFailed
+    | ItemLost
+    | Stranded
+    | Fetched
 )

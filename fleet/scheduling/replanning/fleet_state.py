@@ -1,7 +1,7 @@
 """What is known of a fleet at work: where robots and items are, and who is to do what."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from mend.fleet.scheduling.partial_routes import without_items
 from mend.fleet.scheduling.problem import Problem
@@ -14,7 +14,7 @@ from mend.fleet.scheduling.replanning.residual_problem import (
     residual_problem,
 )
 from mend.fleet.scheduling.replanning.robot_state import TrackedRobot
-from mend.fleet.scheduling.schedule import Action, Route, Schedule
+from mend.fleet.scheduling.schedule import Action, Route, Schedule, Task
 from mend.fleet.scheduling.travel import Travel
 
 
@@ -31,7 +31,10 @@ class Done:
 
 @dataclass(slots=True)
 class FleetState:
-    """Robots, items and the routes that are left, all by number; the stops that were made."""
+    """Robots, items and the routes that are left, all by number; the stops that were made.
+
+    `moved_by`: by robot that has failed, the items that others got then.
+    """
 
     building: Building
     travel: Travel
@@ -41,6 +44,7 @@ class FleetState:
     routes: list[Route]
     now_s: float = 0.0
     log: list[Done] = field(default_factory=list)
+    moved_by: dict[int, set[int]] = field(default_factory=dict)
 
     @classmethod
     def beginning(
@@ -62,12 +66,36 @@ class FleetState:
             [()] * len(problem.robots) if start is None else list(start.routes),
         )
 
+    def copy(self) -> "FleetState":
+        """The same by itself, without what was done: what happens to one leaves the other."""
+        return replace(
+            self,
+            robots=[replace(robot) for robot in self.robots],
+            items=[replace(item) for item in self.items],
+            routes=list(self.routes),
+            log=[],
+            moved_by={number: set(items) for number, items in self.moved_by.items()},
+        )
+
     def robot_number(self, name: str) -> int:
         """The number of a robot. Raises `EventError`."""
         for number, robot in enumerate(self.robots):
             if robot.robot.name == name:
                 return number
         raise EventError(f"there is no robot '{name}'")
+
+    def item_number(self, name: str) -> int:
+        """The number of an item. Raises `EventError`."""
+        for number, item in enumerate(self.items):
+            if item.item.name == name:
+                return number
+        raise EventError(f"there is no item '{name}'")
+
+    def place_number(self, name: str) -> int:
+        """The number of a place. Raises `EventError`."""
+        if name not in self.building.places:
+            raise EventError(f"there is no place '{name}'")
+        return self.building.places.index(name)
 
     def known_ways(self) -> OpenWays:
         """The ways that can be closed. Raises `EventError` where they are not known."""
@@ -80,6 +108,52 @@ class FleetState:
         return residual_problem(
             self.building, self.travel, self.robots, self.items, self.routes, self.now_s
         )
+
+    def record(self, number: int, task: Task, begin_s: float, done_s: float) -> None:
+        """A robot has made a stop. Raises `ItemStateError` where it cannot have."""
+        robot, item = self.robots[number], self.items[task.item]
+        match task.action:
+            case Action.PICK | Action.TAKE:
+                item.load(number, done_s)
+            case Action.GIVE:
+                item.leave(task.place, done_s)
+            case Action.DROP:
+                back = item.returns and task.place == item.item.delivery.place
+                item.close(ItemState.CANCELLED if back else ItemState.DELIVERED)
+        place = self.building.places[task.place]
+        self.log.append(Done(robot.robot.name, task.action, item.item.name, place, begin_s))
+        if robot.left_s is None:
+            robot.left_s = begin_s if robot.trip is None else robot.trip.leaves_s
+        robot.stand_at(task.place, done_s)
+
+    def about_to(self, item: int) -> int | None:
+        """The number of a robot that has set out for something with an item."""
+        for number, robot in enumerate(self.robots):
+            if robot.doing is not None and robot.doing.item == item:
+                return number
+        return None
+
+    def forget_closed(self) -> None:
+        """Forget items with which nothing remains to be done, and the stops that were made."""
+        kept = [
+            number
+            for number, item in enumerate(self.items)
+            if item.open or item.state is ItemState.STRANDED or self.about_to(number) is not None
+        ]
+        number_of = {old: new for new, old in enumerate(kept)}
+
+        def renumbered(task: Task) -> Task:
+            return replace(task, item=number_of[task.item])
+
+        self.items = [self.items[number] for number in kept]
+        self.routes = [tuple(renumbered(task) for task in route) for route in self.routes]
+        for robot in self.robots:
+            robot.doing = None if robot.doing is None else renumbered(robot.doing)
+        self.moved_by = {
+            robot: {number_of[item] for item in items if item in number_of}
+            for robot, items in self.moved_by.items()
+        }
+        self.log.clear()
 
     def retry(self) -> list[int]:
         """The items that have no place for now, which are to be tried again."""
@@ -112,7 +186,13 @@ class FleetState:
             for robot in self.robots
             if robot.works
         }
-        return {name: why for name, why in found.items() if why is not None}
+        # Who has nothing to do and is nowhere to go is not kept by anything.
+        busy = {
+            robot.robot.name
+            for robot, route in zip(self.robots, self.routes, strict=True)
+            if route or robot.trip is not None or robot.robot.end is not None
+        }
+        return {name: why for name, why in found.items() if why is not None and name in busy}
 
     def changed_since(self, before: Sequence[Route]) -> frozenset[str]:
         """The robots that have other stops than with those routes."""

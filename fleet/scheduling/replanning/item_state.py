@@ -5,6 +5,7 @@ from enum import StrEnum
 from math import inf
 
 from mend.fleet.scheduling.problem import Item, Visit, Window
+from mend.fleet.scheduling.schedule import Action
 
 
 class ItemState(StrEnum):
@@ -17,12 +18,25 @@ class ItemState(StrEnum):
     CANCELLED = "cancelled"
     REFUSED = "refused"
     LOST = "lost"
+    STRANDED = "stranded"
 
 
 _NEXT = {
     ItemState.WAITING: {ItemState.ABOARD, ItemState.CANCELLED, ItemState.REFUSED},
-    ItemState.ABOARD: {ItemState.LEFT, ItemState.DELIVERED, ItemState.CANCELLED, ItemState.LOST},
-    ItemState.LEFT: {ItemState.ABOARD},
+    ItemState.ABOARD: {
+        ItemState.LEFT,
+        ItemState.DELIVERED,
+        ItemState.CANCELLED,
+        ItemState.LOST,
+        ItemState.STRANDED,
+    },
+    ItemState.LEFT: {
+        ItemState.ABOARD,
+        ItemState.CANCELLED,
+        ItemState.LOST,
+        ItemState.STRANDED,
+    },
+    ItemState.STRANDED: {ItemState.CANCELLED},
 }
 """Nothing follows the others."""
 
@@ -37,7 +51,8 @@ class TrackedItem:
 
     `robot` has it while it is aboard; `place` and `ready_s` say where it lies since when while it
     is left; `loaded_s` is the end of its pickup. `returns`: it was cancelled on its way and goes
-    back; `overdue`: it goes on although its times cannot be kept; `put_off`: why it is in no plan.
+    back; `overdue`: it goes on although its times cannot be kept; `put_off`: why it is in no plan;
+    `withdrawn`: it was cancelled while a robot is about to pick it up, and ends with that stop.
     """
 
     item: Item
@@ -49,6 +64,7 @@ class TrackedItem:
     returns: bool = False
     overdue: bool = False
     put_off: str | None = None
+    withdrawn: bool = False
 
     @property
     def under_way(self) -> bool:
@@ -58,7 +74,7 @@ class TrackedItem:
     @property
     def open(self) -> bool:
         """Whether anything remains to be done with it."""
-        return self.under_way or self.state is ItemState.WAITING
+        return self.under_way or (self.state is ItemState.WAITING and not self.withdrawn)
 
     def load(self, robot: int, done_s: float) -> None:
         """A robot has it from now on. Raises `ItemStateError`."""
@@ -76,6 +92,28 @@ class TrackedItem:
         """Nothing remains to be done. Raises `ItemStateError`."""
         self._become(state)
         self.robot = self.place = self.put_off = None
+
+    def strand(self) -> None:
+        """It stays where it is, aboard or at a place, until a person takes it.
+
+        Raises `ItemStateError`.
+        """
+        self._become(ItemState.STRANDED)
+        self.put_off = None
+
+    def try_again(self, action: Action, again_s: float) -> None:
+        """What was to be done with it may be tried again at `again_s`; late if need be."""
+        item = self.item
+        if self.state is ItemState.LEFT:
+            self.ready_s = max(self.ready_s, again_s)
+        elif self.state is ItemState.WAITING:
+            window = replace(item.pickup.window, earliest_s=again_s)
+            self.item = replace(item, pickup=replace(item.pickup, window=window))
+        elif action is Action.DROP:
+            window = item.delivery.window
+            self.overdue = self.overdue or again_s > window.latest_s
+            window = Window(again_s, max(again_s, window.latest_s))
+            self.item = replace(item, delivery=replace(item.delivery, window=window))
 
     def send_back(self) -> None:
         """Bring it back to where it was picked up, whenever that is possible."""

@@ -6,8 +6,7 @@ from math import inf
 from mend.fleet.scheduling.checker import require_valid
 from mend.fleet.scheduling.constraint import Constraint, ConstraintKind
 from mend.fleet.scheduling.problem import Problem
-from mend.fleet.scheduling.replanning.fleet_state import Done, FleetState
-from mend.fleet.scheduling.replanning.item_state import ItemState
+from mend.fleet.scheduling.replanning.fleet_state import FleetState
 from mend.fleet.scheduling.replanning.residual_problem import ResidualProblem, is_given
 from mend.fleet.scheduling.replanning.robot_state import TrackedRobot, Trip
 from mend.fleet.scheduling.schedule import Action, Schedule, Task
@@ -17,13 +16,18 @@ from mend.fleet.scheduling.tolerance import CHECK_S
 
 @dataclass(frozen=True, slots=True)
 class NextStop:
-    """A stop that is to be made; it may be `slack_s` late before anything breaks."""
+    """A stop that is to be made; it may be `slack_s` late before anything breaks.
+
+    `partner`: who takes what is given here, or is still to give what is taken here.
+    """
 
     place: str
     action: Action
     item: str
     begin_s: float
     slack_s: float
+    done_s: float
+    partner: str | None = None
 
 
 class LivePlan:
@@ -58,17 +62,26 @@ class LivePlan:
                     state.building.places[task.place],
                     task.action,
                     state.items[task.item].item.name,
-                    network.earliest_s(event),
+                    begin_s := network.earliest_s(event),
                     network.slack_s(event),
+                    begin_s + service_s(self._residual.problem, left),
+                    self._partner(robot, task),
                 )
-                for task, event in zip(
+                for task, left, event in zip(
                     state.routes[robot],
+                    self._residual.routes[number][self._made[robot] :],
                     self._timed.begins[number][self._made[robot] :],
                     strict=True,
                 )
             )
             for number, robot in enumerate(self._residual.robots)
         }
+
+    def _partner(self, robot: int, task: Task) -> str | None:
+        routes = self._state.routes
+        if task.partner is None or (task.action is Action.TAKE and is_given(routes, robot, task)):
+            return None
+        return self._state.robots[task.partner].robot.name
 
     # --- time goes by -----------------------------------------------------------------------------
 
@@ -88,7 +101,10 @@ class LivePlan:
                     at = self._made[robot]
                     begin_s = self._timed.network.earliest_s(self._timed.begins[number][at])
                     lasts_s = service_s(self._residual.problem, self._residual.routes[number][at])
-                    self._make_stop(robot, begin_s, begin_s + lasts_s)
+                    task, *others = self._state.routes[robot]
+                    self._state.record(robot, task, begin_s, begin_s + lasts_s)
+                    self._state.routes[robot] = tuple(others)
+                    self._made[robot] += 1
                     goes_on = True
 
     def _is_due(self, number: int, robot: int) -> bool:
@@ -99,24 +115,6 @@ class LivePlan:
         if begin_s > self._state.now_s + CHECK_S:
             return False
         return route[0].action is not Action.TAKE or is_given(self._state.routes, robot, route[0])
-
-    def _make_stop(self, number: int, begin_s: float, done_s: float) -> None:
-        state = self._state
-        robot, (task, *others) = state.robots[number], state.routes[number]
-        item, place = state.items[task.item], state.building.places[task.place]
-        state.log.append(Done(robot.robot.name, task.action, item.item.name, place, begin_s))
-        match task.action:
-            case Action.PICK | Action.TAKE:
-                item.load(number, done_s)
-            case Action.GIVE:
-                item.leave(task.place, done_s)
-            case Action.DROP:
-                item.close(ItemState.CANCELLED if item.returns else ItemState.DELIVERED)
-        if robot.left_s is None:
-            robot.left_s = begin_s if robot.trip is None else robot.trip.leaves_s
-        robot.place, robot.free_s, robot.trip = task.place, done_s, None
-        state.routes[number] = tuple(others)
-        self._made[number] += 1
 
     def _set_out(self, number: int) -> None:
         """A robot that is free leaves for its next stop, or home when its shift is about to end."""
@@ -151,12 +149,41 @@ class LivePlan:
 
     # --- delays -----------------------------------------------------------------------------------
 
+    def depart(self, number: int) -> set[int] | None:
+        """A robot has left for its next stop: what `delay` returns."""
+        self._departed.add(number)
+        return self.delay(number)
+
+    def keep_up(self) -> set[int] | None:
+        """What has not happened yet is not before now; the items that are late since then.
+
+        None where a constraint breaks.
+        """
+        state, late = self._state, set[int]()
+        for place, number in enumerate(self._residual.robots):
+            robot = state.robots[number]
+            if robot.doing is not None:
+                lasts_s = 0.0
+                if robot.held and robot.begun_s is not None:
+                    task = self._residual.routes[place][0]
+                    lasts_s = service_s(self._residual.problem, task)
+                robot.free_s = max(robot.free_s, state.now_s - lasts_s)
+            moved = self._push(number, robot.available_s(state.now_s), newly=True)
+            if moved is None:
+                return None
+            late |= moved
+        self._timed.wait_for_doors()
+        return None if self._timed.conflict is not None else late
+
     def delay(self, number: int) -> set[int] | None:
         """Tell the network when a robot is free now; the items that are late for it.
 
         None, and the network as it was, where a constraint breaks.
         """
-        place, robot = self._residual.robots.index(number), self._state.robots[number]
+        return self._push(number, self._state.robots[number].free_s, newly=False)
+
+    def _push(self, number: int, free_s: float, *, newly: bool) -> set[int] | None:
+        place = self._residual.robots.index(number)
         event, task = self._timed.leaves[place], None
         if self._made[number] > 0 or number in self._departed:
             if not self._state.routes[number]:
@@ -165,13 +192,16 @@ class LivePlan:
             task = self._residual.routes[place][self._made[number]]
         network, reason = self._timed.network, Constraint(ConstraintKind.TRAVEL, place, task)
         mark = network.mark()
-        if network.not_before(event, robot.free_s, reason) is not None:
+        if network.earliest_s(event) >= free_s:
+            return set()
+        if network.not_before(event, free_s, reason) is not None:
             return None
         return {
             self._residual.items[moved.item]
-            for at in network.moved_since(mark)
+            for at, before_s in network.moved_since(mark).items()
             if (moved := self._task_of.get(at)) is not None
-            and network.earliest_s(at) > _due_s(self._residual.problem, moved) + CHECK_S
+            and network.earliest_s(at) > (due_s := _due_s(self._residual.problem, moved)) + CHECK_S
+            and not (newly and before_s > due_s + CHECK_S)
         }
 
 

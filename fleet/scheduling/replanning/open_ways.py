@@ -1,12 +1,12 @@
 """The ways of a building while some of them are blocked and doors are closed for a while."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from math import inf
 
 from mend.fleet.scheduling.building_travel import travel_in
 from mend.fleet.scheduling.replanning.events import EventError
-from mend.fleet.scheduling.travel import Travel
+from mend.fleet.scheduling.travel import Travel, TravelError
 from mend.maps.navigation import NavigationGraph, Way
 
 
@@ -24,15 +24,31 @@ class OpenWays:
         """Travel between all places as the ways are now."""
         return travel_in(self._graph, self._speed_m_s)
 
-    def close(self, between: Iterable[str], until_s: float) -> None:
-        """Close what is between two neighbouring places. Raises `EventError`."""
+    @property
+    def closed_until_s(self) -> Mapping[frozenset[str], float]:
+        """What is closed, by its two places, and until when."""
+        return self._closed_until_s
+
+    def close(self, between: Iterable[str], until_s: float) -> Travel:
+        """Close what is between two neighbouring places; travel from then on.
+
+        Raises `EventError`, also where ways change at more times than can be planned with.
+        """
+        before = dict(self._closed_until_s)
         self._closed_until_s[self._way(between)] = until_s
         self._renew()
+        try:
+            return self.travel()
+        except TravelError as error:
+            self._closed_until_s = before
+            self._renew()
+            raise EventError(str(error)) from error
 
-    def open(self, between: Iterable[str]) -> None:
-        """Open it again. Raises `EventError`."""
+    def open(self, between: Iterable[str]) -> Travel:
+        """Open it again; travel from then on. Raises `EventError`."""
         self._closed_until_s.pop(self._way(between), None)
         self._renew()
+        return self.travel()
 
     def forget_reopened(self, now_s: float) -> bool:
         """Forget what counts as open again by now; whether there was any."""

@@ -78,7 +78,7 @@ class PlanRepair:
         """Make the routes hold and sell what is to be sold."""
         self._give_way()
         self._end_overtime()
-        pending = list(self._selling)
+        pending = list(self._selling) or self._overload()
         while pending:
             self._place(pending)
             pending = self._overload()

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from mend.fleet.scheduling.problem import Item, Problem, Transfers, Weights
-from mend.fleet.scheduling.replanning.item_state import TrackedItem
+from mend.fleet.scheduling.replanning.item_state import ItemState, TrackedItem
 from mend.fleet.scheduling.replanning.robot_state import TrackedRobot
 from mend.fleet.scheduling.schedule import Action, Route, Task
 from mend.fleet.scheduling.travel import Travel
@@ -62,7 +62,8 @@ def residual_problem(
     item_number = {fleet: number for number, fleet in enumerate(planned)}
     stuck = [0.0] * len(robots)
     for item in items:
-        if item.put_off is not None and item.robot is not None:
+        stays = item.put_off is not None or item.state is ItemState.STRANDED
+        if stays and item.robot is not None:
             stuck[item.robot] += item.item.load
 
     def residual_task(robot: int, task: Task) -> Task:

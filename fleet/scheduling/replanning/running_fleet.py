@@ -1,8 +1,8 @@
 """A fleet at work: time goes by, things happen, and the plan for the rest holds again.
 
-Robots do what is planned when it is planned unless an event says otherwise. What a robot is on its
-way to do it does; an event changes the routes of those robots only whose plan rested on what is not
-so any more.
+Robots do what is planned when it is planned unless an event says otherwise; or, where they are
+observed, only what an event says. What a robot is on its way to do it does; an event changes the
+routes of those robots only whose plan rested on what is not so any more.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -12,21 +12,29 @@ from math import inf
 
 from mend.fleet.scheduling.checker import require_valid
 from mend.fleet.scheduling.problem import Item, Problem, ProblemError
+from mend.fleet.scheduling.replanning import observed_stops
 from mend.fleet.scheduling.replanning.events import (
     Cancelled,
     DoorClosed,
     Event,
     EventError,
+    Fetched,
+    ItemLost,
     NewItem,
     RobotBack,
     RobotDelayed,
     RobotFailed,
+    SetOut,
+    StopBegun,
+    StopFailed,
+    StopMade,
+    Stranded,
     TimePassed,
     WayBlocked,
     WayOpen,
 )
 from mend.fleet.scheduling.replanning.fleet_state import Done, FleetState
-from mend.fleet.scheduling.replanning.item_state import ItemState, TrackedItem
+from mend.fleet.scheduling.replanning.item_state import ItemState, ItemStateError, TrackedItem
 from mend.fleet.scheduling.replanning.live_plan import LivePlan, NextStop
 from mend.fleet.scheduling.replanning.on_the_way import stand_still, turn_before
 from mend.fleet.scheduling.replanning.open_ways import OpenWays
@@ -62,22 +70,48 @@ class RunningFleet:
 
     `ways`: the graph behind the problem's travel, with the same places, where ways may be blocked.
     The items of the problem are planned at once, along `start` if there is one; `first` says what
-    came of that. Raises `ScheduleError` for a `start` that is not valid.
+    came of that. `observed`: stops are made when events say so, and what has not happened yet is
+    never before now. Raises `ScheduleError` for a `start` that is not valid.
     """
 
     def __init__(
-        self, problem: Problem, *, ways: OpenWays | None = None, start: Schedule | None = None
+        self,
+        problem: Problem,
+        *,
+        ways: OpenWays | None = None,
+        start: Schedule | None = None,
+        observed: bool = False,
     ) -> None:
         if start is not None:
             require_valid(problem, start)
-        self._state = FleetState.beginning(problem, ways, start)
-        self._plan: LivePlan | None = None
-        self._moved_by: dict[int, set[int]] = {}
-        self._before: list[Route] = list(self._state.routes)
-        planned = {task.item for task in chain.from_iterable(self._state.routes)}
+        state = FleetState.beginning(problem, ways, start)
+        self._take(state, observed)
+        planned = {task.item for task in chain.from_iterable(state.routes)}
         self.first = self._replan([n for n in range(len(problem.items)) if n not in planned])
 
+    @classmethod
+    def resumed(cls, state: FleetState, *, observed: bool = True) -> "RunningFleet":
+        """The fleet whose state was kept. Raises `ScheduleError` where its plan is not valid."""
+        fleet = cls.__new__(cls)
+        fleet._take(state, observed)
+        fleet._plan_the_rest()
+        fleet.first = Outcome()
+        return fleet
+
+    def _take(self, state: FleetState, observed: bool) -> None:
+        self._state, self._observed = state, observed
+        self._plan: LivePlan | None = None
+        self._before: list[Route] = list(state.routes)
+
     # --- what is known ----------------------------------------------------------------------------
+
+    def state(self) -> FleetState:
+        """All that is known, by itself; `resumed` makes an equal fleet of it."""
+        return self._state.copy()
+
+    def fork(self) -> "RunningFleet":
+        """An equal fleet on which something can be tried."""
+        return RunningFleet.resumed(self._state.copy(), observed=self._observed)
 
     @property
     def now_s(self) -> float:
@@ -111,19 +145,53 @@ class RunningFleet:
         left: dict[str, tuple[NextStop, ...]] = dict.fromkeys(self.robots, ())
         return left if self._plan is None else {**left, **self._plan.stops()}
 
+    def leaves_s(self, name: str, stop: NextStop) -> float:
+        """When a robot has to leave, at the latest, to begin its next stop as planned."""
+        state, robot = self._state, self.robots[name]
+        from_s, place = robot.available_s(state.now_s), state.place_number(stop.place)
+        speed = robot.robot.speed
+        later_s = stop.begin_s - state.travel.shortest_lasting_s(robot.place, place, from_s, speed)
+        arrival_s = state.travel.trip(robot.place, place, later_s, speed).arrival_s
+        return max(from_s, later_s) if arrival_s <= stop.begin_s + CHECK_S else from_s
+
+    def is_there(self, name: str) -> bool:
+        """Whether what a robot has set out to load is there for it, as far as is known.
+
+        Raises `EventError` where it has not set out for anything.
+        """
+        return observed_stops.is_there(self._state, self._state.robot_number(name))
+
+    def closed_until_s(self) -> Mapping[frozenset[str], float]:
+        """The ways that are blocked or closed for now, and until when they count as that."""
+        return {} if self._state.ways is None else self._state.ways.closed_until_s
+
     # --- what happens -----------------------------------------------------------------------------
 
-    def advance(self, now_s: float) -> None:
-        """Let robots do what is planned until `now_s`. Raises `EventError` for a time before."""
+    def advance(self, now_s: float) -> Outcome:
+        """Let robots do what is planned until `now_s`. Raises `EventError` for a time before.
+
+        Where they are observed, what they have not done yet is later, and so may be the rest.
+        """
         state = self._state
         if not state.now_s - CHECK_S <= now_s < inf:
             raise EventError(f"it is {state.now_s:g} s already, so nothing happens at {now_s:g} s")
         state.now_s = max(state.now_s, now_s)
-        if self._plan is not None:
+        self._before = list(state.routes)
+        if self._plan is not None and not self._observed:
             self._plan.carry_out()
         if state.ways is not None and state.ways.forget_reopened(state.now_s):
             # What was closed counts as open now; the plan said so from the beginning.
             state.travel = state.ways.travel()
+        return self._keep_up() if self._observed else Outcome()
+
+    def _keep_up(self) -> Outcome:
+        late = set[int]() if self._plan is None else self._plan.keep_up()
+        return self._replan([], again=late or ()) if late is None or late else Outcome()
+
+    def forget_closed(self) -> None:
+        """Forget items with which nothing remains to be done, and the log of stops."""
+        self._state.forget_closed()
+        self._plan_the_rest()
 
     def apply(self, event: Event, now_s: float) -> Outcome:
         """Let time pass until `now_s` and let the event happen.
@@ -140,7 +208,7 @@ class RunningFleet:
             case RobotDelayed():
                 return self._delay(self._state.robot_number(event.robot), event.by_s)
             case RobotFailed():
-                return self._fail(self._state.robot_number(event.robot), event.lost)
+                return self._fail(event)
             case RobotBack():
                 return self._come_back(self._state.robot_number(event.robot), event.place)
             case WayBlocked():
@@ -153,6 +221,50 @@ class RunningFleet:
                 return self._open(event.between)
             case TimePassed():
                 return self._replan(self._state.retry())
+            case SetOut() | StopBegun() | StopMade() | StopFailed():
+                return self._observe(event)
+            case ItemLost():
+                return self._end(event.item, ItemState.LOST)
+            case Stranded():
+                return self._end(event.item, ItemState.STRANDED)
+            case Fetched():
+                return self._end(event.item, ItemState.CANCELLED)
+
+    def _observe(self, event: SetOut | StopBegun | StopMade | StopFailed) -> Outcome:
+        if not self._observed:
+            raise EventError("these robots are not observed: they do what is planned")
+        state, number = self._state, self._state.robot_number(event.robot)
+        match event:
+            case SetOut():
+                return self._set_out(number)
+            case StopBegun():
+                observed_stops.begin(state, number)
+                selling = []
+            case StopMade():
+                selling = observed_stops.make(state, number, event.closes)
+            case StopFailed():
+                place = state.place_number(event.at)
+                selling = observed_stops.fail(state, number, place, event.again_s)
+        return self._replan(selling)
+
+    def _set_out(self, number: int) -> Outcome:
+        observed_stops.set_out(self._state, number)
+        assert self._plan is not None, "it works"
+        late = self._plan.depart(number)
+        return self._replan([], again=late or ()) if late is None or late else Outcome()
+
+    def _end(self, name: str, becomes: ItemState) -> Outcome:
+        """No robot does anything more with an item."""
+        state, number = self._state, self._state.item_number(name)
+        item = state.items[number]
+        if item.state not in (ItemState.ABOARD, ItemState.LEFT, ItemState.STRANDED):
+            raise EventError(f"item '{name}' is {item.state}: no robot has it, and it lies nowhere")
+        try:
+            item.strand() if becomes is ItemState.STRANDED else item.close(becomes)
+        except ItemStateError as error:
+            raise EventError(str(error)) from error
+        state.take_out(number)
+        return self._replan(state.retry())
 
     def _new_item(self, item: Item) -> Outcome:
         state = self._state
@@ -178,6 +290,9 @@ class RunningFleet:
         if item.returns:
             raise EventError(f"item '{name}' is cancelled already")
         state.take_out(number)
+        if not item.under_way and state.about_to(number) is not None:
+            item.withdrawn, item.put_off = True, None
+            return self._replan(state.retry())
         if item.under_way:
             item.send_back()
             item.put_off = None
@@ -213,17 +328,29 @@ class RunningFleet:
             if item.robot == number and item.loaded_s == before_s:
                 item.loaded_s = now_free_s
 
-    def _fail(self, number: int, lost: frozenset[str]) -> Outcome:
-        state, robot = self._state, self._state.robots[number]
-        name = robot.robot.name
+    def _fail(self, event: RobotFailed) -> Outcome:
+        state, name, lost = self._state, event.robot, event.lost
+        number = state.robot_number(name)
+        robot = state.robots[number]
         if not robot.works:
             raise EventError(f"robot '{name}' has failed already")
-        aboard = {n: item for n, item in enumerate(state.items) if item.robot == number}
+        place = None if event.at is None else state.place_number(event.at)
+        aboard = {
+            n: item
+            for n, item in enumerate(state.items)
+            if item.robot == number and item.state is ItemState.ABOARD
+        }
         unknown = lost - {item.item.name for item in aboard.values()}
         if unknown:
             raise EventError(f"robot '{name}' does not have {', '.join(sorted(unknown))} on board")
-        stand_still(robot, state.ways, state.now_s)
+        doing = robot.doing
+        if place is None:
+            stand_still(robot, state.ways, state.now_s)
+        robot.stand_at(robot.place if place is None else place, state.now_s)
         robot.works = False
+        if doing is not None and state.items[doing.item].withdrawn:
+            state.items[doing.item].withdrawn = False
+            state.items[doing.item].close(ItemState.CANCELLED)
         moved = {task.item for task in state.routes[number]} | set(aboard)
         for n, item in aboard.items():
             item.put_off = None
@@ -235,7 +362,7 @@ class RunningFleet:
                 item.leave(robot.place, state.now_s)
         for n in moved:
             state.take_out(n, keep_pickups=True)
-        self._moved_by[number] = moved
+        state.moved_by[number] = moved
         return self._replan(sorted(moved))
 
     def _come_back(self, number: int, place: str) -> Outcome:
@@ -246,25 +373,22 @@ class RunningFleet:
             raise EventError(f"there is no place '{place}'")
         robot.works, robot.place = True, state.building.places.index(place)
         robot.free_s = max(state.now_s, robot.robot.shift.earliest_s)
-        return self._replan(state.retry(), again=self._moved_by.pop(number, ()))
+        return self._replan(state.retry(), again=state.moved_by.pop(number, ()))
 
     def _close(self, between: tuple[str, str], until_s: float) -> Outcome:
         state, ways = self._state, self._state.known_ways()
         stopped = ways.numbers(between)
         turns = [turn_before(robot, ways, stopped, state.now_s) for robot in state.robots]
-        ways.close(between, until_s)
-        state.travel = ways.travel()
+        state.travel = ways.close(between, until_s)
         for robot, turn in zip(state.robots, turns, strict=True):
             if turn is not None:
-                robot.place, robot.free_s = turn
-                robot.trip = None
+                robot.turn_at(turn, state.travel)
         return self._replan([])
 
     def _open(self, between: tuple[str, str]) -> Outcome:
         state, ways = self._state, self._state.known_ways()
         before = state.travel
-        ways.open(between)
-        state.travel = ways.travel()
+        state.travel = ways.open(between)
         shorter = set()
         for robot, route in zip(state.robots, state.routes, strict=True):
             place = robot.place
@@ -299,10 +423,12 @@ class RunningFleet:
         for number, why in repair.overtime.items():
             longer[residual.problem.robots[number].name] = why
         outcome = self._outcome(new, put_off, late, longer)
-        left = state.residual_problem()
-        assert left is not None, "somebody works"
-        self._plan = LivePlan(state, left)
+        self._plan_the_rest()
         return outcome
+
+    def _plan_the_rest(self) -> None:
+        left = self._state.residual_problem()
+        self._plan = None if left is None else LivePlan(self._state, left)
 
     def _take_over(self, residual: ResidualProblem, repair: PlanRepair) -> None:
         """Let robots and items know what was repaired."""
@@ -311,6 +437,8 @@ class RunningFleet:
         for number, robot in enumerate(residual.robots):
             if not repair.held[number]:
                 state.robots[robot].let_go()
+            if observed_stops.does_next(state, robot):
+                state.robots[robot].take_up()
             if number in repair.overtime:
                 ends_s = repair.problem.robots[number].shift.latest_s
                 state.robots[robot].overtime_until_s = ends_s

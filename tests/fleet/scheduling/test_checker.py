@@ -116,3 +116,8 @@ def test_item_aboard_needs_no_pickup() -> None:
     schedule = earliest_schedule(problem, ((), (Task(1, Action.DROP, 0),)))
     assert isinstance(schedule, Schedule)
     assert check(problem, schedule) == []
+
+
+def test_item_that_may_not_change_robots_and_does_is_named() -> None:
+    problem = corridor(items=(parcel(direct=True),))
+    assert "item 'parcel' changes robots, which it may not" in check(problem, handed_over())

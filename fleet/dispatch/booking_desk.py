@@ -1,0 +1,163 @@
+"""What people ask: booked, refused with the next possible time, changed or cancelled."""
+
+from mend.errors import ConflictError, WrongInputError
+from mend.fleet.dispatch.booking import Answer, AnyRequest, Booking, Expected, Series
+from mend.fleet.dispatch.dispatch_state import DispatchState, refusing
+from mend.fleet.dispatch.giving_up import GivingUp
+from mend.fleet.dispatch.next_possible import bounded, next_possible
+from mend.fleet.dispatch.views import stops_by_booking, view_of
+from mend.fleet.requests import RequestStatus
+from mend.fleet.scheduling.problem import Item
+from mend.fleet.scheduling.replanning.events import Cancelled, NewItem
+from mend.fleet.scheduling.replanning.running_fleet import RunningFleet
+
+
+class BookingDesk:
+    """Takes requests on, one by one and as they recur."""
+
+    def __init__(self, state: DispatchState, giving_up: GivingUp) -> None:
+        self._state, self._giving_up = state, giving_up
+
+    def submit(self, request: AnyRequest) -> Answer:
+        """Book a request, or the first occurrence of one that recurs, or refuse it."""
+        if request.recurrence is None:
+            return self._book(request.name, request)
+        series = Series(request)
+        answer = self._book(series.next_name(), request.occurrence(1))
+        if answer.booked:
+            series.booked = 1
+            self._state.series[request.name] = series
+            self.book_recurring()
+        return answer
+
+    def cancel(self, name: str) -> None:
+        """What is asked for under a name is not wanted any more; what is fetched goes back.
+
+        Of a request that recurs all that is still open goes. Raises `NotFoundError`, and
+        `ConflictError` where it is over.
+        """
+        series = self._state.series.get(name)
+        if series is None:
+            self._cancel(self._state.open_booking(name))
+            return
+        left = [
+            each
+            for each in self._state.occurrences(name)
+            if each.open
+            and each.status is not RequestStatus.RETURNING
+            and not self._state.fleet.items[each.name].withdrawn
+        ]
+        if series.over and not left:
+            raise ConflictError(f"the request '{name}' is over")
+        series.over = True
+        for booking in left:
+            self._cancel(booking)
+
+    def change(self, name: str, request: AnyRequest) -> Answer:
+        """Book other words for what nobody has set out for yet; refused, it stays as it was.
+
+        Raises `NotFoundError`, and `ConflictError` where it is too late or it recurs.
+        """
+        if name in self._state.series or request.recurrence is not None:
+            raise ConflictError(
+                f"the request '{name}' recurs: change one occurrence, or cancel it and ask anew"
+            )
+        if request.name != name.split("/", 1)[0]:
+            raise WrongInputError(
+                f"what is changed keeps its name: '{name.split('/', 1)[0]}', not '{request.name}'"
+            )
+        for place in request.places:
+            self._state.building.find(place)
+        booking = self._state.open_booking(name)
+        if booking.status not in (RequestStatus.BOOKED, RequestStatus.WAITING):
+            raise ConflictError(f"the request '{name}' is {booking.status}: too late to change it")
+        without = self._state.fleet.fork()
+        without.apply(Cancelled(name), without.now_s)
+        without.forget_closed()
+        answer = self._take_on(without, self._item(name, request), f"'{name}' is wanted otherwise")
+        if answer is None:
+            booking.request, booking.attempts, booking.reason = request, 0, None
+            self._state.settle()
+        return answer or Answer(True, self._expected(name))
+
+    def require_free(self, name: str) -> None:
+        """Raises `ConflictError` where there is something of that name that was not refused."""
+        booking = self._state.bookings.get(name) or self._state.bookings.get(f"{name}/1")
+        refused = booking is not None and booking.status is RequestStatus.REFUSED
+        if (booking is not None and not refused) or name in self._state.series:
+            raise ConflictError(f"there is a request '{name}' already")
+
+    def book_recurring(self) -> None:
+        """Book what recurs as far ahead as is planned."""
+        for series in self._state.series.values():
+            while not series.over:
+                if not series.request.recurs(series.booked + 1):
+                    series.over = True
+                    break
+                request = series.request.occurrence(series.booked + 1)
+                if series.is_missed(self._state.fleet.now_s):
+                    series.booked += 1
+                    continue
+                if request.earliest_s > self._state.fleet.now_s + self._state.policy.horizon_s:
+                    break
+                name = series.next_name()
+                series.booked += 1
+                self._book(name, request)
+
+    def _item(self, name: str, request: AnyRequest) -> Item:
+        item = request.item(name, self._state.terms)
+        if request.latest_s is None:
+            begins_s = max(self._state.fleet.now_s, request.earliest_s)
+            item = bounded(item, begins_s + self._state.policy.longest_s)
+        return item
+
+    def _book(self, name: str, request: AnyRequest) -> Answer:
+        if name in self._state.fleet.items:
+            self._state.fleet.forget_closed()
+        booking = Booking(name, request)
+        answer = self._take_on(
+            self._state.fleet, self._item(name, request), f"'{name}' is asked for"
+        )
+        self._state.bookings.pop(name, None)
+        self._state.bookings[name] = booking
+        if answer is not None:
+            booking.status, booking.reason = RequestStatus.REFUSED, answer.why
+            booking.closed_s = self._state.fleet.now_s
+            return answer
+        self._state.settle()
+        return Answer(True, self._expected(name))
+
+    def _take_on(self, fleet: RunningFleet, item: Item, why: str) -> Answer | None:
+        """Go on as that fleet with one more item. Where it has no place, stay as it is, and say why
+        and when it would have one."""
+        trial, policy = fleet.fork(), self._state.policy
+        with refusing():
+            outcome = trial.apply(NewItem(item), trial.now_s)
+        refused = outcome.refused.get(item.name)
+        if refused is None:
+            with self._state.log.entry(lambda: self._state.fleet, why, {item.name}) as outcomes:
+                outcomes.append(outcome)
+                self._state.fleet = trial
+            return None
+        window = next_possible(fleet, item, longest_s=policy.longest_s, grace_s=policy.grace_s)
+        return Answer(False, None, refused, window)
+
+    def _cancel(self, booking: Booking) -> None:
+        item = self._state.fleet.items[booking.name]
+        if item.withdrawn or booking.status is RequestStatus.RETURNING:
+            raise ConflictError(f"the request '{booking.name}' is cancelled already")
+        booking.reason = "it was cancelled"
+        self._giving_up.give_up(booking, f"'{booking.name}' was cancelled")
+        self._state.settle()
+
+    def _expected(self, name: str) -> Expected | None:
+        stops = stops_by_booking(self._state.fleet)
+        return view_of(self._state.bookings[name], stops).expected
+
+    def recurs_s(self) -> list[float]:
+        """When the next occurrences of what recurs begin that are not booked yet."""
+        return [
+            series.request.occurrence(series.booked + 1).earliest_s
+            for series in self._state.series.values()
+            if not series.over
+        ]
