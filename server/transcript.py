@@ -69,6 +69,8 @@ DEEDS: dict[Act, str] = {
     Act.RELEASE: "clears the robot's way",
     Act.COVER: "covers the head camera",
     Act.UNCOVER: "clears the head camera's view",
+    Act.PUT_IN: "puts {object} into the robot's basket",
+    Act.TAKE_OUT: "takes {object} out of the robot's basket",
 }
 
 PROMISES: dict[Help, str] = {
@@ -78,7 +80,12 @@ PROMISES: dict[Help, str] = {
     Help.CLEAR_WAY: "the way clear",
     Help.CLEAR_VIEW: "the table again",
     Help.TELL_PLACE: "that it is where it was told",
+    Help.PUT_IN: "something put into its basket",
+    Help.TAKE_OUT: "something taken out of its basket",
 }
+
+_FELT = (Help.PUT_IN, Help.TAKE_OUT)
+"""Help that no camera sees."""
 
 RESOLUTIONS: dict[Resolution, str] = {
     Resolution.HUMAN_FINISH: "the human finished {name}",
@@ -107,6 +114,8 @@ CHANGES: dict[Change, str] = {
     Change.MOVED: ": it has been moved",
     Change.HANDED_OVER: "",
     Change.CLEARED: "",
+    Change.LOADED: "",
+    Change.UNLOADED: "",
 }
 
 
@@ -310,17 +319,20 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.HelpAwaited) -> list[Line]:
-        text = f"looks for {_promised(event)} until {event.until:.1f} s"
+        how = "waits to feel" if event.help in _FELT else "looks for"
+        text = f"{how} {_promised(event)} until {event.until:.1f} s"
         return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
     @lines.register
     def _(self, event: ev.HelpVerified) -> list[Line]:
-        text = f"sees {_promised(event)}{CHANGES[event.change]}"
+        how = "feels" if event.help in _FELT else "sees"
+        text = f"{how} {_promised(event)}{CHANGES[event.change]}"
         return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
     @lines.register
     def _(self, event: ev.HelpNotSeen) -> list[Line]:
-        text = f"does not see {_promised(event)}"
+        how = "feel" if event.help in _FELT else "see"
+        text = f"does not {how} {_promised(event)}"
         return [_line(event, self._robot(event.robot), text, Tone.SETBACK)]
 
     @lines.register
@@ -397,7 +409,7 @@ def told_start(run: UUID, tree: str, started: StartedRun) -> str:
 
 def deed_text(intervention: Intervention) -> str:
     """What a person does, as the end of a sentence that begins with who it is."""
-    text = DEEDS[intervention.act].format(object=intervention.object)
+    text = DEEDS[intervention.act].format(object=intervention.object or "something")
     if intervention.act is Act.STEAL and intervention.manner == "pull":
         text = f"pulls {intervention.object} out of the gripper"
     if intervention.act is Act.RELEASE and intervention.object and intervention.place is None:

@@ -16,6 +16,8 @@ _ACTS = {
     "hand_over": Act.HAND_OVER,
     "clear_way": Act.RELEASE,
     "clear_view": Act.UNCOVER,
+    "put_in": Act.PUT_IN,
+    "take_out": Act.TAKE_OUT,
 }
 
 
@@ -73,6 +75,8 @@ def deed(
         return KeptPromise(
             Intervention(act=act, object=promise.object, place=promise.place), delay_s
         )
+    if act in (Act.PUT_IN, Act.TAKE_OUT):
+        return KeptPromise(Intervention(act=act, object=promise.object), delay_s)
     if act is Act.UNCOVER:
         return KeptPromise(Intervention(act=act), delay_s)
     if promise.object is None:

@@ -1,20 +1,22 @@
-"""The looks of a base: where it is, and whether its way is free."""
+"""The looks of a base: where it is, whether its way is free, and what its basket weighs."""
 
 from mend.robots.base.base import Base
 from mend.robots.base.behaviors.execution import BaseExecution
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.routine import Routine
-from mend.robots.link.messages import Look, Looked, Position
+from mend.robots.link.messages import FeltLoad, Look, Looked, Position
 
 _PERIOD_S = 0.5
 
 
-def answer(base: Base, command: str, fulfilled: bool | None) -> Looked:
+def answer(
+    base: Base, command: str, fulfilled: bool | None, felt: FeltLoad | None = None
+) -> Looked:
     """Where the base is; it sees no objects, and judges no results."""
     here = base.body.pose()
     at = Position(x=here.x, y=here.y, z=0.0)
-    return Looked(command=command, objects={}, gripper=at, fulfilled=fulfilled)
+    return Looked(command=command, objects={}, gripper=at, fulfilled=fulfilled, felt=felt)
 
 
 def look_as_told(
@@ -23,6 +25,8 @@ def look_as_told(
     """The routine of a `look` command. Raises `CommandError` for what no base can see."""
     if look.expect == "located":
         return _look_where(base, command, look)
+    if look.expect in ("loaded", "unloaded"):
+        return _feel(base, command, look.within_s, held)
     if look.expect not in (None, "way_clear"):
         raise CommandError(f"a base that drives cannot look for '{look.expect}'")
 
@@ -39,6 +43,21 @@ def look_as_told(
         return answer(base, command, None if look.expect is None else True)
 
     return routine()
+
+
+def _feel(base: Base, command: str, within_s: float, held: AnyExecution | None) -> Routine[Looked]:
+    """Whether the basket holds what the step that waits needs, or else what was in it before."""
+
+    def felt() -> FeltLoad | None:
+        return held.felt() if isinstance(held, BaseExecution) else base.load.as_remembered()
+
+    end_s = base.body.time_s() + within_s
+    while (told := felt()) is not None:
+        left_s = end_s - base.body.time_s()
+        if left_s <= 1e-9:
+            return answer(base, command, fulfilled=False, felt=told)
+        yield from base.wait(min(_PERIOD_S, left_s))
+    return answer(base, command, fulfilled=True)
 
 
 def _look_where(base: Base, command: str, look: Look) -> Routine[Looked]:

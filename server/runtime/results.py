@@ -38,7 +38,9 @@ def missing_parts(state: RunState) -> list[ev.MissingPart]:
         ev.MissingPart(
             node=event.node,
             name=event.name,
-            object=tree.leaf_definition(leaf).object or event.name,
+            object=tree.leaf_definition(leaf).object
+            or tree.leaf_definition(leaf).item
+            or event.name,
             place=tree.leaf_definition(leaf).place or event.name,
             left_out_by=event.helper,
         )
