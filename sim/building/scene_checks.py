@@ -15,6 +15,7 @@ from mend.robots.base.floor_ways import FloorWays
 from mend.robots.execution.behavior import of_kind
 from mend.robots.execution.command_error import CommandError
 from mend.sim.building.building_robot import LIMITS
+from mend.sim.building.item_checks import check_items
 from mend.sim.building.scene import NEEDS_M
 from mend.sim.building.setting import read_setting
 from mend.tasks.definition import BehaviorNode, GoalNode
@@ -39,6 +40,7 @@ def check_scene(scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]) -> list[
         *_without_room(scene, building),
         *_not_for_bases(nodes),
         *_out_of_reach(scene, building, nodes),
+        *check_items(nodes, len(bases_of(scene))),
     ]
 
 
