@@ -80,7 +80,7 @@ _SEEN_NOW = {
     Expectation.WAY_CLEAR: "I see nothing in my way now.",
     Expectation.VIEW_CLEAR: "I see the table now.",
     Expectation.LOCATED: "I know where I am now.",
-    Expectation.LOADED: "I feel in my basket now what I was to be given.",
+    Expectation.LOADED: "I feel that my basket is heavier now.",
     Expectation.UNLOADED: "I feel that my basket is lighter now.",
     Expectation.IN_GRIPPER: "I have the {object} between my fingers.",
 }

@@ -1,4 +1,4 @@
-"""Whatever people do: no thing is lost or doubled, and a rebuilt world has everything where it was."""
+"""Whatever people do, nothing is lost or doubled, and a rebuilt world has all where it was."""
 
 import json
 
