@@ -16,13 +16,14 @@ class BasketMemory:
     """What a robot remembers of its basket, also when it is switched off.
 
     `items`: what it was given, with what each weighed when it felt that (kg). `expected_kg`: what
-    the load cell showed after that; None before its first look. `offered`: what it has offered at
-    a place, since it got there. `handed_over`: where it last handed over what it no longer has.
+    the load cell showed after that; None before its first look. `offered`: what it has offered, and
+    at which place, since it got there. `handed_over`: where it last handed over what it no
+    longer has.
     """
 
     items: dict[str, float] = field(default_factory=dict)
     expected_kg: float | None = None
-    offered: str | None = None
+    offered: tuple[str, str] | None = None
     handed_over: dict[str, str] = field(default_factory=dict)
 
     def note_given(self, item: str, load_kg: float) -> None:

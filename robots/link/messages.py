@@ -151,6 +151,9 @@ LASER = "laser"
 BASKET = "basket"
 """And where the load cell of a basket felt it."""
 
+LISTENING = "listening"
+"""And where it is that nobody has said anything."""
+
 PoseValues = tuple[
     Coordinate, Coordinate, Coordinate, Coordinate, Coordinate, Coordinate, Coordinate
 ]

@@ -11,7 +11,7 @@ from mend.dialogue.conversation import Conversation
 from mend.dialogue.evidence import Change, PutRight
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.script import CloseReason, Expectation, Felt, Script, Turn
-from mend.robots.link.messages import LASER, Detection
+from mend.robots.link.messages import BASKET, LASER, Detection
 from mend.server.journal import events as ev
 from mend.tasks.issue import Issue, Sensed
 
@@ -234,7 +234,7 @@ def issue_of(raised: ev.IssueRaised) -> Issue:
 def _sensed(detection: Detection | None) -> Sensed:
     if detection is None:
         return Sensed.SEEN
-    if detection.felt:
+    if detection.felt or detection.camera == BASKET:
         return Sensed.FELT
     if detection.camera == LASER:
         return Sensed.BY_LASER

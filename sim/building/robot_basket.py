@@ -18,7 +18,7 @@ class BasketSnapshot(StrictModel):
     draws: str
     items: dict[str, float]
     expected_kg: float | None
-    offered: str | None
+    offered: tuple[str, str] | None
     handed_over: dict[str, str]
 
 

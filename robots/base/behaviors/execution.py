@@ -134,8 +134,9 @@ class BaseExecution(Execution[BaseProgress]):
         if memory.offered is not None and memory.offered not in self._hands_over():
             memory.offered = None
 
-    def _hands_over(self) -> list[str]:
-        return [each.item for each in self._progress.steps if isinstance(each, AwaitTaken)]
+    def _hands_over(self) -> list[tuple[str, str]]:
+        steps = (each for each in self._progress.steps if isinstance(each, AwaitTaken))
+        return [(each.item, each.place) for each in steps]
 
     def _find_out(self) -> Routine[None]:
         """Stand while it does not know where it is: it cannot say that it is there."""

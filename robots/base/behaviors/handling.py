@@ -26,7 +26,7 @@ class Handling:
     def hand_over(self, step: AwaitTaken) -> Routine[None]:
         """Wait until the item is taken out of the basket. Raises `Interruption`."""
         base, memory = self._base, self._base.basket.memory
-        memory.offered = step.item
+        memory.offered = (step.item, step.place)
         base.basket.offer(step.item, step.place)
         weight_kg = memory.items[step.item]
         yield from self._await(step, until=lambda: base.load.taken(weight_kg) is None)

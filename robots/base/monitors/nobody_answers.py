@@ -8,7 +8,7 @@ from mend.robots.base.monitors.asking import Asking
 from mend.robots.base.monitors.monitor import BaseMonitor, BaseView
 from mend.robots.execution.monitor import ANY_BEHAVIOR, Reaction
 from mend.robots.execution.phase import Phase
-from mend.robots.link.messages import LASER, Detection
+from mend.robots.link.messages import LISTENING, Detection
 
 
 class NobodyAnswers(BaseMonitor[Asking]):
@@ -24,4 +24,4 @@ class NobodyAnswers(BaseMonitor[Asking]):
         standing = view.standing
         if standing is None or standing.waited_s < self.settings.asks_s:
             return None
-        return Detection(camera=LASER, explanation="nobody has told me yet that it was heard")
+        return Detection(camera=LISTENING, explanation="nobody has told me yet that it was heard")
