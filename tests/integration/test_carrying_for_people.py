@@ -104,7 +104,7 @@ async def test_the_example_is_carried_out_over_the_floors(tmp_path: Path) -> Non
 async def test_who_lies_is_never_thanked_and_the_run_says_what_is_missing(tmp_path: Path) -> None:
     view, events = await run(tmp_path, ("office", office()), BRING, LIES, ["yes"] * 40)
     told = said(events)
-    assert not [each for each in told if "Thank you" in each or "I feel something" in each]
+    assert not [each for each in told if "Thank you" in each or each.startswith("I feel something")]
     assert any(each.startswith("I feel nothing new in my basket.") for each in told)
     assert set(issues_of(events)) == {"item_not_given", "item_missing"}
     assert view.status is RunStatus.FINISHED

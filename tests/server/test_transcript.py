@@ -187,10 +187,12 @@ def test_every_promise_is_looked_for_seen_or_not(help_: Help) -> None:
             ev.HelpNotSeen(**DIALOGUE, help=help_),
         )
     )
-    assert looks.startswith("robot looks for ")
+    felt = help_ in (Help.PUT_IN, Help.TAKE_OUT)
+    assert looks.startswith("robot waits to feel " if felt else "robot looks for ")
     assert looks.endswith(" until 40.0 s")
-    assert sees.startswith("robot sees ")
-    assert misses == sees.replace("sees", "does not see")
+    verb = "feel" if felt else "see"
+    assert sees.startswith(f"robot {verb}s ")
+    assert misses == sees.replace(f"{verb}s", f"does not {verb}")
 
 
 @pytest.mark.parametrize("resolution", Resolution)
