@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -38,6 +39,24 @@ BRING = task(
 TELL = task({"behavior": "deliver_message", "place": "F1-101", "message": "Lunch is here."})
 
 
+def settings_in(folder: Path) -> Settings:
+    return Settings(port=0, data_dir=folder, log_level="error", speech_voice="none")
+
+
+def request(person: Person, answers: list[str], **options: float | str) -> RunRequest:
+    return RunRequest.model_validate(
+        {
+            "tree": "task",
+            "world": "building",
+            "speed": "max",
+            "seed": 2,
+            "answers": answers,
+            "person": person,
+            "world_options": {"localizer": "exact", "shut_doors": 0.0, **options},
+        }
+    )
+
+
 async def run(
     folder: Path,
     scene: tuple[str, str],
@@ -47,22 +66,28 @@ async def run(
     **options: float | str,
 ) -> tuple[RunView, list[ev.Event]]:
     """A run and its events."""
-    settings = Settings(port=0, data_dir=folder, log_level="error", speech_voice="none")
-    async with open_service(settings) as service, asyncio.timeout(PATIENCE_S):
+    async with open_service(settings_in(folder)) as service, asyncio.timeout(PATIENCE_S):
         await service.library.scenes.save(*scene)
         await service.library.trees.save("task", tree)
-        request = RunRequest.model_validate(
-            {
-                "tree": "task",
-                "world": "building",
-                "speed": "max",
-                "seed": 2,
-                "answers": answers,
-                "person": person,
-                "world_options": {"localizer": "exact", "shut_doors": 0.0, **options},
-            }
-        )
-        begun = await service.runtime.start_run(request)
+        begun = await service.runtime.start_run(request(person, answers, **options))
+        view = await service.runtime.wait_for_end(begun.id)
+        events = list(await service.journal.read(0, 100_000, begun.id))
+    return view, events
+
+
+async def run_with_restart(
+    folder: Path, so: Callable[[ev.Event], bool]
+) -> tuple[RunView, list[ev.Event]]:
+    """A run of `BRING` whose service is ended at an event, and begun again."""
+    async with open_service(settings_in(folder)) as service, asyncio.timeout(PATIENCE_S):
+        await service.library.scenes.save("office", office())
+        await service.library.trees.save("task", BRING)
+        begun = await service.runtime.start_run(request(KEEPS_WORD, ["yes"] * 40))
+        with service.journal.subscribe(0) as records:
+            async for record in records:
+                if so(ev.any_event.validate_json(record.text)):
+                    break
+    async with open_service(settings_in(folder)) as service, asyncio.timeout(PATIENCE_S):
         view = await service.runtime.wait_for_end(begun.id)
         events = list(await service.journal.read(0, 100_000, begun.id))
     return view, events
@@ -143,3 +168,38 @@ async def test_the_robot_that_has_an_item_hands_it_over(tmp_path: Path) -> None:
     assert len(done) == 2
     assert done[0] == done[1]
     assert "item_missing" not in issues_of(events)
+
+
+def is_issue(kind: str) -> Callable[[ev.Event], bool]:
+    return lambda each: isinstance(each, ev.IssueRaised) and each.issue == kind
+
+
+def is_felt(help_: str) -> Callable[[ev.Event], bool]:
+    return lambda each: isinstance(each, ev.HelpVerified) and each.help == help_
+
+
+def is_done(name: str) -> Callable[[ev.Event], bool]:
+    return lambda each: isinstance(each, ev.NodeDone) and each.name == name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "so",
+    [
+        is_issue("item_not_given"),
+        is_felt("put_in"),
+        is_done("collect_item"),
+        is_issue("item_not_taken"),
+        is_felt("take_out"),
+    ],
+    ids=["asked", "given", "collected", "offered", "taken"],
+)
+async def test_what_is_carried_is_neither_lost_nor_doubled_by_a_restart(
+    tmp_path: Path, so: Callable[[ev.Event], bool]
+) -> None:
+    view, events = await run_with_restart(tmp_path, so)
+    assert view.status is RunStatus.FINISHED, view.result
+    assert view.result is not None
+    assert not view.result.missing
+    assert not {"item_missing", "item_taken"} & set(issues_of(events))
+    require_thanks_only_for_help(events)
