@@ -113,16 +113,10 @@ class Goods:
         `stands_at`: whether a robot stands, and at a place where one is named. Returns why it
         cannot be done, or nothing.
         """
-        back = [
-            each
-            for each in self.items.values()
-            if each.taken and each.robot is not None and stands_at(each.robot, None)
-        ]
-        for each in back:
-            assert each.robot is not None, "it was taken out of a basket"
-            each.put_in(each.robot)
+        back = self._put_back(stands_at)
         if back:
-            return ""
+            others = name is not None and name not in back
+            return f"somebody put back '{back[0]}', which was taken out before" if others else ""
         robot = self._who_wishes(name, stands_at, hands_over=False)
         if robot is None:
             return f"no robot asks for {_called(name)} where it stands"
@@ -135,7 +129,7 @@ class Goods:
         forgets, takes_another = self._forgets()
         if takes_another:
             wish.mistaken = self._put_in_another(robot, wish.place)
-            return ""
+            return "somebody put something else into the basket"
         if forgets:
             return f"somebody forgot to put '{wish.item}' into the basket"
         item = self._item(wish.item, wish.place)
@@ -159,7 +153,7 @@ class Goods:
         if takes_another and others:
             wish.mistaken = others[int(self._rng.integers(len(others)))]
             there[wish.mistaken].give_to(wish.place, delivered=False)
-            return ""
+            return "somebody took something else out of the basket"
         if forgets:
             return f"somebody forgot to take '{wish.item}' out of the basket"
         if wish.item not in there:
@@ -174,6 +168,15 @@ class Goods:
             return f"'{name}' is in no robot's basket"
         item.taken = True
         return ""
+
+    def _put_back(self, stands_at: Callable[[int, str | None], bool]) -> list[str]:
+        """Put what was taken on the way back into the baskets of robots that stand; what it was."""
+        back = []
+        for name, item in self.items.items():
+            if item.taken and item.robot is not None and stands_at(item.robot, None):
+                item.put_in(item.robot)
+                back.append(name)
+        return back
 
     def _who_wishes(
         self,
