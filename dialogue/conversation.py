@@ -82,6 +82,7 @@ _SEEN_NOW = {
     Expectation.LOCATED: "I know where I am now.",
     Expectation.LOADED: "I feel that my basket is heavier now.",
     Expectation.UNLOADED: "I feel that my basket is lighter now.",
+    Expectation.CHARGED: "I feel current now.",
     Expectation.IN_GRIPPER: "I have the {object} between my fingers.",
 }
 

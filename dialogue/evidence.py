@@ -16,9 +16,9 @@ itself, and a robot may find out by itself where it is, so that nobody is thanke
 who has not promised or told it.
 
 A person has helped if a change was seen that only a person can have made: the object appeared,
-moved, or came between the fingers, the basket got heavier or lighter as was asked, or what was in
-the way is gone. A promise alone is not help, nor is a look that sees no more than the first one
-did.
+moved, or came between the fingers, the basket got heavier or lighter as was asked, current
+came, or what was in the way is gone. A promise alone is not help, nor is a look that sees no more
+than the first one did.
 """
 
 import math
@@ -58,6 +58,8 @@ class Change(StrEnum):
     """Something was put into the basket that was to be put in."""
     UNLOADED = "unloaded"
     """Something was taken out of the basket that was to be taken out."""
+    CHARGED = "charged"
+    """The robot was plugged in."""
 
     @property
     def by_a_person(self) -> bool:
@@ -65,7 +67,11 @@ class Change(StrEnum):
         return self not in (Change.UNKNOWN, Change.NONE)
 
 
-_FELT = {Expectation.LOADED: Change.LOADED, Expectation.UNLOADED: Change.UNLOADED}
+_FELT = {
+    Expectation.LOADED: Change.LOADED,
+    Expectation.UNLOADED: Change.UNLOADED,
+    Expectation.CHARGED: Change.CHARGED,
+}
 
 
 @dataclass(frozen=True, slots=True)

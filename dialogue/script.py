@@ -34,6 +34,8 @@ class Help(StrEnum):
     """Put something into the robot's basket."""
     TAKE_OUT = "take_out"
     """Take something out of the robot's basket."""
+    CHARGE = "charge"
+    """Plug the robot in."""
 
 
 class Felt(StrEnum):
@@ -138,6 +140,8 @@ class Expectation(StrEnum):
     """The robot feels in its basket what it was to be given, or to be given back."""
     UNLOADED = "unloaded"
     """The robot feels that its basket is lighter by what was to be taken out."""
+    CHARGED = "charged"
+    """The robot feels that its battery is being charged."""
 
 
 EXPECTED: Mapping[Help, Expectation] = {
@@ -149,6 +153,7 @@ EXPECTED: Mapping[Help, Expectation] = {
     Help.TELL_PLACE: Expectation.LOCATED,
     Help.PUT_IN: Expectation.LOADED,
     Help.TAKE_OUT: Expectation.UNLOADED,
+    Help.CHARGE: Expectation.CHARGED,
 }
 """What a robot has to see before a promise counts as kept."""
 

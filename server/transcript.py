@@ -71,6 +71,7 @@ DEEDS: dict[Act, str] = {
     Act.UNCOVER: "clears the head camera's view",
     Act.PUT_IN: "puts {object} into the robot's basket",
     Act.TAKE_OUT: "takes {object} out of the robot's basket",
+    Act.CHARGE: "plugs the robot in",
 }
 
 PROMISES: dict[Help, str] = {
@@ -82,9 +83,10 @@ PROMISES: dict[Help, str] = {
     Help.TELL_PLACE: "that it is where it was told",
     Help.PUT_IN: "something put into its basket",
     Help.TAKE_OUT: "something taken out of its basket",
+    Help.CHARGE: "current",
 }
 
-_FELT = (Help.PUT_IN, Help.TAKE_OUT)
+_FELT = (Help.PUT_IN, Help.TAKE_OUT, Help.CHARGE)
 """Help that no camera sees."""
 
 RESOLUTIONS: dict[Resolution, str] = {
@@ -116,6 +118,7 @@ CHANGES: dict[Change, str] = {
     Change.CLEARED: "",
     Change.LOADED: "",
     Change.UNLOADED: "",
+    Change.CHARGED: "",
 }
 
 

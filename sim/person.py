@@ -18,6 +18,7 @@ _ACTS = {
     "clear_view": Act.UNCOVER,
     "put_in": Act.PUT_IN,
     "take_out": Act.TAKE_OUT,
+    "charge": Act.CHARGE,
 }
 
 
@@ -77,7 +78,7 @@ def deed(
         )
     if act in (Act.PUT_IN, Act.TAKE_OUT):
         return KeptPromise(Intervention(act=act, object=promise.object), delay_s)
-    if act is Act.UNCOVER:
+    if act in (Act.UNCOVER, Act.CHARGE):
         return KeptPromise(Intervention(act=act), delay_s)
     if promise.object is None:
         return None

@@ -7,6 +7,7 @@ import numpy as np
 
 from mend.maps.building.cabin import CABIN_M
 from mend.robots.base.basket import Basket, LoadSense, NoBasket
+from mend.robots.base.battery import Battery, MainsPower
 from mend.robots.base.body import BaseBody, BasePose
 from mend.robots.base.elevators import Elevators, NoElevators
 from mend.robots.base.jumps import Jumps
@@ -42,6 +43,7 @@ class Base(Effector[BaseBody]):
         elevators: Elevators | None = None,
         whereabouts: Whereabouts | None = None,
         basket: Basket | None = None,
+        battery: Battery | None = None,
     ) -> None:
         """`ways` says which points to pass to a goal, `whereabouts` if it may be lost."""
         warm_up()
@@ -49,6 +51,7 @@ class Base(Effector[BaseBody]):
         self.ways = ways
         self.elevators = elevators or NoElevators()
         self.basket = basket or NoBasket()
+        self.battery: Battery = battery or MainsPower()
         self.load = LoadSense(self.basket)
         self.whereabouts: Whereabouts = whereabouts or AlwaysKnown()
         self.at_rest = True

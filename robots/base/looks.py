@@ -1,5 +1,7 @@
 """The looks of a base: where it is, whether its way is free, and what its basket weighs."""
 
+from collections.abc import Callable
+
 from mend.robots.base.base import Base
 from mend.robots.base.behaviors.execution import BaseExecution
 from mend.robots.execution.command_error import CommandError
@@ -27,6 +29,8 @@ def look_as_told(
         return _look_where(base, command, look)
     if look.expect in ("loaded", "unloaded"):
         return _feel(base, command, look.within_s, held)
+    if look.expect == "charged":
+        return _until(base, command, look.within_s, lambda: base.battery.charging)
     if look.expect not in (None, "way_clear"):
         raise CommandError(f"a base that drives cannot look for '{look.expect}'")
 
@@ -62,19 +66,21 @@ def _feel(base: Base, command: str, within_s: float, held: AnyExecution | None) 
 
 def _look_where(base: Base, command: str, look: Look) -> Routine[Looked]:
     """Whether it knows where it is, or, with a guess, sees that it is there."""
-    end_s = base.body.time_s() + look.within_s
     if look.guess is not None:
         return _look_there(base, command, look.guess)
 
-    def routine() -> Routine[Looked]:
-        while base.whereabouts.is_lost:
-            left_s = end_s - base.body.time_s()
-            if left_s <= 1e-9:
-                return answer(base, command, fulfilled=False)
-            yield from base.wait(min(_PERIOD_S, left_s))
-        return answer(base, command, fulfilled=True)
+    return _until(base, command, look.within_s, lambda: not base.whereabouts.is_lost)
 
-    return routine()
+
+def _until(base: Base, command: str, within_s: float, so: Callable[[], bool]) -> Routine[Looked]:
+    """Whether something comes to be so in time."""
+    end_s = base.body.time_s() + within_s
+    while not so():
+        left_s = end_s - base.body.time_s()
+        if left_s <= 1e-9:
+            return answer(base, command, fulfilled=False)
+        yield from base.wait(min(_PERIOD_S, left_s))
+    return answer(base, command, fulfilled=True)
 
 
 def _look_there(base: Base, command: str, guess: str) -> Routine[Looked]:

@@ -18,6 +18,8 @@ class Phase(StrEnum):
     """The base waits until something is taken out of its basket."""
     TELL = "tell"
     """The base has told a message, and waits until somebody says that it was heard."""
+    CHARGE = "charge"
+    """The base stands at a charger."""
     APPROACH = "approach"
     GRASP = "grasp"
     LIFT = "lift"

@@ -151,6 +151,9 @@ LASER = "laser"
 BASKET = "basket"
 """And where the load cell of a basket felt it."""
 
+GAUGE = "gauge"
+"""And where the gauge of a battery told it."""
+
 LISTENING = "listening"
 """And where it is that nobody has said anything."""
 
@@ -421,6 +424,7 @@ Expected = Literal[
     "located",
     "loaded",
     "unloaded",
+    "charged",
 ]
 
 
@@ -432,7 +436,8 @@ class Look(Message):
     graspable range; `in_gripper`: take `object` from a person (move to the hand-over pose, open,
     close once it is seen between the fingers); `way_clear`: nothing is in the arm's way;
     `view_clear`: the head camera shows the table; `located`: it knows where it is; `loaded` and
-    `unloaded`: its basket weighs what the step that waits needs, or what it weighed before. A
+    `unloaded`: its basket weighs what the step that waits needs, or what it weighed before;
+    `charged`: current comes into its battery. A
     person has told `guess`, one of a detection's `guesses`: then what it sees has to agree with it.
     `rate`: simulated worlds let their clock run so fast while they look again and again; None is
     the run's own speed. `finished`: the results to judge by what the last pictures show.

@@ -33,6 +33,7 @@ _WITHOUT_OBJECT = (
     Expectation.LOCATED,
     Expectation.LOADED,
     Expectation.UNLOADED,
+    Expectation.CHARGED,
 )
 """What a look may be asked to wait for that is about no object."""
 

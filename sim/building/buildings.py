@@ -97,6 +97,7 @@ class Buildings:
                         world.elevators.of_robot(number),
                         body.whereabouts,
                         world.baskets[number],
+                        world.batteries[number],
                     )
                 ],
             )

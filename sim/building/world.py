@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mend.documents.strict_model import StrictModel
 from mend.maps.building.building import Building, DoorOpening
 from mend.maps.building.clearance import distances_m
+from mend.robots.base.battery import LOW
 from mend.robots.base.body import RangeScan
 from mend.sim.building import laser
 from mend.sim.building.belief import Belief, BeliefSnapshot, FloorMap
@@ -19,6 +20,7 @@ from mend.sim.building.bystander import RADIUS_M as PERSON_RADIUS_M
 from mend.sim.building.bystander import Bystander
 from mend.sim.building.cabin import Cabin, Call
 from mend.sim.building.carrying import Carrying
+from mend.sim.building.chargers import is_at_charger
 from mend.sim.building.door import WorldDoor
 from mend.sim.building.draws import read_draws, written_draws
 from mend.sim.building.elevator_bank import CabinSnapshot, ElevatorBank
@@ -29,6 +31,7 @@ from mend.sim.building.laser_noise import measured_m
 from mend.sim.building.odometry import Odometer, OdometerSnapshot
 from mend.sim.building.options import BuildingOptions
 from mend.sim.building.robot_basket import BasketSnapshot, RobotBasket
+from mend.sim.building.robot_battery import BatterySnapshot, RobotBattery
 from mend.tasks.frames import Frame
 from mend.tasks.intervention import Act, Intervention
 
@@ -61,6 +64,7 @@ class WorldSnapshot(StrictModel):
     items: dict[str, ItemSnapshot]
     wishes: dict[int, WishSnapshot]
     baskets: list[BasketSnapshot]
+    batteries: list[BatterySnapshot]
     furniture: dict[str, list[Row]]
     furniture_moves_s: float
     carries_s: float | None
@@ -114,6 +118,7 @@ class BuildingWorld:
         self._scans: dict[BuildingRobot, RangeScan] = {}
         senses = Senses(self.time_s, self._height_m, self._scan, self.advance_cycle)
         self.robots = [self._robot(*start, senses, maps) for start in starts]
+        self.batteries = [RobotBattery(options.battery_wh) for _ in self.robots]
         self.baskets = [RobotBasket(goods, each, goods.seed) for each in range(len(self.robots))]
 
     def _robot(
@@ -140,8 +145,8 @@ class BuildingWorld:
         self._move_furniture()
         if self._carrying.is_due(self._time_s):
             self._carry_one()
-        for robot in self.robots:
-            self._drive(robot)
+        for robot, battery in zip(self.robots, self.batteries, strict=True):
+            self._use_battery(robot, battery)
         self.elevators.pass_time(self._time_s, self.robots, self._circles)
         for robot in self.robots:
             self._scan(robot)
@@ -153,6 +158,20 @@ class BuildingWorld:
         for floor in self.building.floors:
             stand = [(x, y) for x, y, _ in self._circles(floor)]
             self._furniture.move_one(floor, stand, _FURNITURE_FROM_ROBOTS_M)
+
+    def _use_battery(self, robot: BuildingRobot, battery: RobotBattery) -> None:
+        """Drive as far as the battery allows it."""
+        before = robot.at
+        if battery.empty:
+            robot.bump()
+        else:
+            self._drive(robot)
+        if not battery.endless:
+            battery.docked = not robot.moving and is_at_charger(
+                self.building, robot.at.floor, robot.at.x, robot.at.y
+            )
+            driven_m = math.hypot(robot.at.x - before.x, robot.at.y - before.y)
+            battery.pass_time(PERIOD_S, driven_m)
 
     def _drive(self, robot: BuildingRobot) -> None:
         wanted = robot.next_pose()
@@ -254,6 +273,8 @@ class BuildingWorld:
                 return self.goods.put_in(intervention.object, self._stands_at)
             case Act.TAKE_OUT:
                 return self.goods.take_out(intervention.object, self._stands_at)
+            case Act.CHARGE:
+                return self._plug_in()
             case Act.STEAL:
                 return self.goods.steal(intervention.object)
             case act:
@@ -268,6 +289,17 @@ class BuildingWorld:
         if at is None or robot.at.floor != at.floor:
             return False
         return math.hypot(robot.at.x - at.x, robot.at.y - at.y) <= _BEFORE_PERSON_M
+
+    def _plug_in(self) -> str:
+        """Somebody plugs in all robots that stand with little left."""
+        low = [
+            battery
+            for robot, battery in zip(self.robots, self.batteries, strict=True)
+            if battery.share < LOW and not robot.moving and robot.at.floor in self.building.floors
+        ]
+        for each in low:
+            each.plugged = True
+        return "" if low else "no robot that stands has little left in its battery"
 
     def _step_in_the_way(self) -> str:
         driving = next((each for each in self.robots if each.moving), None)
@@ -343,6 +375,7 @@ class BuildingWorld:
             items=items,
             wishes=wishes,
             baskets=[each.snapshot() for each in self.baskets],
+            batteries=[each.snapshot() for each in self.batteries],
             furniture=self._furniture.rows(),
             furniture_moves_s=self._furniture_moves_s,
             carries_s=self._carrying.due_s,
@@ -361,6 +394,8 @@ class BuildingWorld:
         self.goods.restore(kept.items, kept.wishes)
         for basket, was in zip(self.baskets, kept.baskets, strict=True):
             basket.restore(was)
+        for battery, held in zip(self.batteries, kept.batteries, strict=True):
+            battery.restore(held)
         self._furniture.restore(kept.furniture)
         self._furniture_moves_s = kept.furniture_moves_s
         self._carrying.due_s = kept.carries_s

@@ -11,7 +11,14 @@ from mend.tasks.issue import Issue
 from mend.tasks.resolution import Resolution
 
 SCRIPTS = load_scripts()
-CARRYING = ("item_not_given", "item_not_taken", "item_taken", "item_missing", "nobody_answers")
+CARRYING = (
+    "item_not_given",
+    "item_not_taken",
+    "item_taken",
+    "item_missing",
+    "nobody_answers",
+    "low_battery",
+)
 
 
 def conversation(
@@ -63,6 +70,7 @@ def test_an_item_is_asked_for_by_its_name() -> None:
         ("item_not_given", Help.PUT_IN, "Thank you. I feel something new in my basket. I go on."),
         ("item_not_taken", Help.TAKE_OUT, "Thank you. I feel that my basket is lighter. I go on."),
         ("item_taken", Help.PUT_IN, "Thank you. My basket weighs what it did. I go on."),
+        ("low_battery", Help.CHARGE, "Thank you. I feel current. I go on."),
     ],
 )
 def test_a_promise_is_watched_for_and_thanked_for_once_it_is_felt(
@@ -139,7 +147,11 @@ def test_who_was_given_nothing_asks_to_leave_it_out() -> None:
 
 @pytest.mark.parametrize(
     ("expected", "change"),
-    [(Expectation.LOADED, Change.LOADED), (Expectation.UNLOADED, Change.UNLOADED)],
+    [
+        (Expectation.LOADED, Change.LOADED),
+        (Expectation.UNLOADED, Change.UNLOADED),
+        (Expectation.CHARGED, Change.CHARGED),
+    ],
 )
 def test_a_basket_that_weighs_what_it_must_tells_of_a_person(
     expected: Expectation, change: Change

@@ -37,6 +37,7 @@ class BuildingBench:
         unmapped: float = 0.0,
         carried_every_s: float = 0.0,
         forgetful: float = 0.0,
+        battery_wh: float = 0.0,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
         setup = WorldSetup(
@@ -51,6 +52,7 @@ class BuildingBench:
                 "unmapped": unmapped,
                 "carried_every_s": carried_every_s,
                 "forgetful": forgetful,
+                "battery_wh": battery_wh,
             },
         )
         self.group: SharedWorld = BUILDINGS.create_agents(setup)

@@ -187,7 +187,7 @@ def test_every_promise_is_looked_for_seen_or_not(help_: Help) -> None:
             ev.HelpNotSeen(**DIALOGUE, help=help_),
         )
     )
-    felt = help_ in (Help.PUT_IN, Help.TAKE_OUT)
+    felt = help_ in (Help.PUT_IN, Help.TAKE_OUT, Help.CHARGE)
     assert looks.startswith("robot waits to feel " if felt else "robot looks for ")
     assert looks.endswith(" until 40.0 s")
     verb = "feel" if felt else "see"

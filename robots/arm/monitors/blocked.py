@@ -51,6 +51,7 @@ class Blocked(ArmMonitor[BlockedParameters]):
         Phase.LOAD,
         Phase.UNLOAD,
         Phase.TELL,
+        Phase.CHARGE,
         Phase.CONFIRM,
     }
     reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE

@@ -70,7 +70,14 @@ class Tell:
     name: str
 
 
-StandingStep: TypeAlias = AwaitItem | AwaitTaken | Tell
+@dataclass(frozen=True, slots=True)
+class Charging:
+    """One step: stand at a charger until the battery is full."""
+
+    name: str
+
+
+StandingStep: TypeAlias = AwaitItem | AwaitTaken | Tell | Charging
 """What is done where the drive before has led."""
 BaseStep: TypeAlias = Drive | GetIn | RideUntilThere | StandingStep
 UNHEARD = "nobody_answers"

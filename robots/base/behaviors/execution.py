@@ -3,11 +3,13 @@
 from collections.abc import Callable, Sequence
 
 from mend.robots.base.base import Base
+from mend.robots.base.battery import ENOUGH, LOW
 from mend.robots.base.behaviors.behavior import (
     UNHEARD,
     AwaitItem,
     AwaitTaken,
     BaseStep,
+    Charging,
     Drive,
     GetIn,
     RideUntilThere,
@@ -104,6 +106,7 @@ class BaseExecution(Execution[BaseProgress]):
         self._forget_other_offers()
         self._watch.check()
         yield from self._find_out()
+        yield from self._fill_up()
         if self._done == 0 and self._is_there():
             return True
         if self._is_elsewhere():
@@ -144,6 +147,15 @@ class BaseExecution(Execution[BaseProgress]):
             self._watch.check_if_due()
             yield
 
+    def _fill_up(self) -> Routine[None]:
+        """Stand while it is charged because its battery was low."""
+        battery = self._base.battery
+        if battery.share >= LOW:
+            return
+        while battery.charging and battery.share < ENOUGH:
+            self._watch.check_if_due()
+            yield
+
     def _is_there(self) -> bool:
         """Whether it is where all of its steps lead."""
         return all(
@@ -167,6 +179,8 @@ class BaseExecution(Execution[BaseProgress]):
                 yield from self._handling.hand_over(step)
             case Tell():
                 yield from self._handling.tell(step)
+            case Charging():
+                yield from self._handling.charge(step)
 
     def _react(self, interruption: Interruption) -> Routine[None]:
         self._asked_whether_heard = str(interruption) == UNHEARD

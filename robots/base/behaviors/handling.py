@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from mend.robots.base.base import Base
+from mend.robots.base.battery import FULL
 from mend.robots.base.behaviors.behavior import AwaitItem, AwaitTaken, StandingStep
 from mend.robots.base.behaviors.progress import BaseProgress, StandingWait
 from mend.robots.base.behaviors.watch import BaseWatch
@@ -36,6 +37,10 @@ class Handling:
     def tell(self, step: StandingStep) -> Routine[None]:
         """Wait until somebody says that the message was heard. Raises `Interruption`."""
         yield from self._await(step, until=lambda: self._progress.heard)
+
+    def charge(self, step: StandingStep) -> Routine[None]:
+        """Stand until the battery is full. Raises `Interruption`."""
+        yield from self._await(step, until=lambda: self._base.battery.share >= FULL)
 
     def _await(self, step: StandingStep, until: Callable[[], bool]) -> Routine[None]:
         self._progress.standing = StandingWait(step, self._base.body.time_s())

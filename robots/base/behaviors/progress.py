@@ -7,6 +7,7 @@ from mend.robots.base.behaviors.behavior import (
     AwaitItem,
     AwaitTaken,
     BaseStep,
+    Charging,
     Drive,
     StandingStep,
     Tell,
@@ -80,5 +81,7 @@ class BaseProgress(Progress):
                 return Phase.UNLOAD
             case Tell():
                 return Phase.TELL
+            case Charging():
+                return Phase.CHARGE
             case _:
                 return Phase.TRAVEL

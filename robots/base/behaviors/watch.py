@@ -4,9 +4,9 @@ import math
 from collections.abc import Callable, Sequence
 
 from mend.robots.base.base import Base
-from mend.robots.base.behaviors.behavior import AwaitItem, AwaitTaken, Drive, Tell
+from mend.robots.base.behaviors.behavior import AwaitItem, AwaitTaken, Charging, Drive, Tell
 from mend.robots.base.behaviors.progress import BaseProgress
-from mend.robots.base.monitors.monitor import AwaitedElevator, BaseView, StandingFor
+from mend.robots.base.monitors.monitor import AwaitedElevator, BaseView, Power, StandingFor
 from mend.robots.execution.monitor import AnyMonitor
 from mend.robots.execution.watch import Watch
 from mend.robots.link.messages import ReportBody
@@ -62,6 +62,7 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
                 standing=self._standing(now),
                 lacks=self._lacks(),
                 missing_kg=self._missing_kg(),
+                power=self._power(),
             )
         )
 
@@ -72,8 +73,13 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
         match standing.step:
             case AwaitItem(item=item, place=place) | AwaitTaken(item=item, place=place):
                 return StandingFor(item, place, now_s - standing.since_s)
-            case Tell():
+            case Tell() | Charging():
                 return StandingFor(None, None, now_s - standing.since_s)
+
+    def _power(self) -> Power:
+        battery = self._base.battery
+        to_charger = any(isinstance(each, Charging) for each in self._progress.steps)
+        return Power(battery.share, battery.charging, to_charger)
 
     def _lacks(self) -> str | None:
         """What it is to hand over and was never given."""

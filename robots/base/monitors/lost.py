@@ -29,6 +29,7 @@ class Lost(BaseMonitor[LostPatience]):
             Phase.LOAD,
             Phase.UNLOAD,
             Phase.TELL,
+            Phase.CHARGE,
             Phase.CONFIRM,
         }
     )

@@ -32,12 +32,24 @@ class AwaitedElevator:
 class StandingFor:
     """Who stands at a place for people for `waited_s` so far: to put in or take out an item.
 
-    Without one it has told a message.
+    Without one it has told a message, or is charged.
     """
 
     item: str | None
     place: str | None
     waited_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Power:
+    """What the gauge of a battery tells: the `share` that it holds, and whether current comes in.
+
+    `to_charger`: the base is on its way there, or at one.
+    """
+
+    share: float = 1.0
+    charging: bool = False
+    to_charger: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,6 +80,7 @@ class BaseView(MonitorView):
     standing: StandingFor | None = None
     lacks: str | None = None
     missing_kg: float = 0.0
+    power: Power = Power()
 
 
 class BaseMonitor(Monitor[P, BaseView]):

@@ -17,6 +17,7 @@ const SENTENCES: Readonly<Record<string, (part: string) => string>> = {
   item_not_taken: () => "The robot waits for something to be taken out of its basket.",
   item_taken: () => "Something was taken out of the robot's basket on its way.",
   item_missing: () => "The robot is to hand over something that it was not given.",
+  low_battery: () => "The robot has little left in its battery.",
   nobody_answers: () => "The robot has told a message, and nobody has said that it was heard.",
 };
 

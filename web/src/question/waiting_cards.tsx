@@ -16,6 +16,7 @@ const PROMISES: Readonly<Record<Help, (part: string) => string>> = {
   tell_place: () => "know where it is",
   put_in: () => "would put something into its basket",
   take_out: () => "would take something out of its basket",
+  charge: () => "would plug it in",
 };
 
 const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
@@ -27,6 +28,7 @@ const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
   tell_place: () => "The robot looks whether what its laser sees agrees with that.",
   put_in: () => "The robot waits until it feels that in its basket.",
   take_out: () => "The robot waits until it feels that its basket is lighter.",
+  charge: () => "The robot waits until it feels current.",
 };
 
 /** A base sees with its laser, and has no arm. */
