@@ -53,10 +53,10 @@ class Intervention(StrictModel):
     """One thing that a person does in a world.
 
     `object` is required by every act but `block`, `release`, `cover`, `uncover` and `charge`, and
-    `put_in` and `take_out`, which are about any robot that asks for it where they name none; `place`
-    (a name of the scene) by `place`; `to` by `move`. A `release` with both `object` and `place` frees that
-    place as well, one with an `object` alone puts that aside. `manner` says how `steal` takes the
-    object: `vanish` at once, or `pull` it out of the gripper by force.
+    `put_in` and `take_out`, which are about any robot that asks for it where they name none;
+    `place` (a name of the scene) by `place`; `to` by `move`. A `release` with both `object` and
+    `place` frees that place as well, one with an `object` alone puts that aside. `manner` says how
+    `steal` takes the object: `vanish` at once, or `pull` it out of the gripper by force.
     """
 
     act: Annotated[Act, Field(strict=False)]

@@ -170,6 +170,16 @@ async def test_the_robot_that_has_an_item_hands_it_over(tmp_path: Path) -> None:
     assert "item_missing" not in issues_of(events)
 
 
+@pytest.mark.slow
+async def test_a_robot_with_little_left_is_plugged_in_and_goes_on(tmp_path: Path) -> None:
+    view, events = await run(
+        tmp_path, ("office", office()), BRING, KEEPS_WORD, ["yes"] * 40, battery_wh=1.0
+    )
+    assert view.status is RunStatus.FINISHED, view.result
+    assert "low_battery" in issues_of(events)
+    require_thanks_only_for_help(events)
+
+
 def is_issue(kind: str) -> Callable[[ev.Event], bool]:
     return lambda each: isinstance(each, ev.IssueRaised) and each.issue == kind
 

@@ -164,7 +164,13 @@ def test_who_clears_the_way_of_a_part_puts_that_aside() -> None:
 
 @pytest.mark.parametrize("act", Act)
 def test_every_act_has_words(act: Act) -> None:
-    without = {Act.BLOCK: "robot", Act.RELEASE: "robot", Act.COVER: "camera", Act.UNCOVER: "camera"}
+    without = {
+        Act.BLOCK: "robot",
+        Act.RELEASE: "robot",
+        Act.COVER: "camera",
+        Act.UNCOVER: "camera",
+        Act.CHARGE: "robot",
+    }
     object_name = None if act in without else "pink_bar"
     to = Pose(x=0.5, y=0.0) if act is Act.MOVE else None
     intervention = Intervention(act=act, object=object_name, to=to)

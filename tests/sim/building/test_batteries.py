@@ -1,4 +1,4 @@
-"""Batteries drain, chargers and people fill them, and a robot says what it lacks before it stands."""
+"""Batteries drain, chargers and people fill them, and a robot asks before its own is empty."""
 
 import json
 
