@@ -7,7 +7,7 @@ script = Script(
     opening="question",
     states={
         "question": AskState(
-            text="I have a message for {place}: “{message}” Have you heard it there?",
+            text='I have a message for {place}: "{message}" Have you heard it there?',
             yes="heard",
             yes_effect="I take your word that the message was heard, and {go_on}.",
             no="leave",

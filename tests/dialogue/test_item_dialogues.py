@@ -124,7 +124,7 @@ def test_a_message_is_told_word_for_word_and_taken_for_heard_on_somebodys_word()
     talk = conversation("nobody_answers", message="Come to room_7 {now}, 10-12.", reason="")
     ask = asked(list(talk.open()))
     assert ask.text == (
-        "I have a message for F1 101: “Come to room_7 {now}, 10-12.” Have you heard it there?"
+        'I have a message for F1 101: "Come to room_7 {now}, 10-12." Have you heard it there?'
     )
     turns = list(talk.answer("yes"))
     assert closed(turns) == Close(CloseReason.RESOLVED, Resolution.ROBOT_FINISH, helped=True)

@@ -121,7 +121,7 @@ async def test_the_example_is_carried_out_over_the_floors(tmp_path: Path) -> Non
     assert issues.count("item_not_given") == issues.count("item_not_taken") == 2
     assert issues.count("nobody_answers") == 1
     told = said(events)
-    assert any("“The visitors for 11-12 o'clock have come.”" in each for each in told), told
+    assert any('"The visitors for 11-12 o\'clock have come."' in each for each in told), told
     require_thanks_only_for_help(events)
 
 
