@@ -432,12 +432,17 @@ def _without(missing: Sequence[ev.MissingPart]) -> str:
     said: dict[str | None, list[str]] = {}
     for each in missing:
         said.setdefault(each.left_out_by, []).append(each.object)
-    parts = (f"without {joined(objects)}{_as_said(by)}" for by, objects in said.items())
+    parts = (
+        f"without {joined(list(dict.fromkeys(objects)))}{_as_said(by)}"
+        for by, objects in said.items()
+    )
     return f"the task is done {joined(list(parts))}"
 
 
 def told_missing(part: ev.MissingPart) -> str:
     """That a part is not at its place at the end, and who said to go on without it."""
+    if part.nowhere:
+        return f"{part.name} was left out{_as_said(part.left_out_by)}"
     return f"{part.object} is not at {part.place}{_as_said(part.left_out_by)}"
 
 

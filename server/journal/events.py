@@ -451,6 +451,8 @@ class MissingPart(EventModel):
     """A leaf whose object is not at its place at the end, as it was left out.
 
     `left_out_by`: the helper who said so; None in the journal of an older Mend, which did not ask.
+    `nowhere`: the leaf handles no object that could be seen at a place; `object` is then what it
+    carries, or its own name.
     """
 
     node: str
@@ -458,6 +460,7 @@ class MissingPart(EventModel):
     object: str
     place: str
     left_out_by: str | None = None
+    nowhere: bool = False
 
 
 class UnseenPart(EventModel):

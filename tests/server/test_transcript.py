@@ -10,7 +10,14 @@ import pytest
 from mend.dialogue.script import CloseReason, Help
 from mend.server.access.roles import Role
 from mend.server.journal import events as ev
-from mend.server.transcript import Line, Tone, Transcript, grouped
+from mend.server.transcript import (
+    Line,
+    Tone,
+    Transcript,
+    finished_text,
+    grouped,
+    told_missing,
+)
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.resolution import Resolution
 from mend.tasks.scene import Pose
@@ -302,3 +309,12 @@ def test_a_recorded_run_reads_in_order_from_beginning_to_end() -> None:
     assert lines[0].tone is Tone.RUN
     assert lines[-1].tone is Tone.FINISHED
     assert {line.speaker for line in lines if line.tone is Tone.SAID} == {"robot"}
+
+
+def test_a_leaf_without_an_object_is_told_as_left_out_and_its_item_once() -> None:
+    collected = ev.MissingPart(
+        node="/0", name="collect", object="mail", place="F1-101", left_out_by="anna", nowhere=True
+    )
+    handed_over = collected.model_copy(update={"node": "/1", "name": "hand_over"})
+    assert told_missing(collected) == "collect was left out, as anna said"
+    assert finished_text([collected, handed_over]) == "the task is done without mail, as anna said"
