@@ -15,6 +15,7 @@ from mend.dialogue.script import (
     CloseReason,
     CloseState,
     Expectation,
+    Felt,
     Help,
     HelpState,
     LeaveState,
@@ -79,6 +80,9 @@ _SEEN_NOW = {
     Expectation.WAY_CLEAR: "I see nothing in my way now.",
     Expectation.VIEW_CLEAR: "I see the table now.",
     Expectation.LOCATED: "I know where I am now.",
+    Expectation.LOADED: "I feel that my basket is heavier now.",
+    Expectation.UNLOADED: "I feel that my basket is lighter now.",
+    Expectation.CHARGED: "I feel current now.",
     Expectation.IN_GRIPPER: "I have the {object} between my fingers.",
 }
 
@@ -162,20 +166,23 @@ class Conversation:
         said = self._word(said)
         return self._settle(CloseReason.RESOLVED, state.resolution, said, change)
 
-    def help_not_seen(self) -> list[Turn]:
-        """The promised help was not seen in time: ask about it again, or give up."""
+    def help_not_seen(self, felt: Felt | None = None) -> list[Turn]:
+        """The promised help was not seen in time: ask about it again, or give up.
+
+        `felt`: what a basket feels instead, where it is one that was to feel the help.
+        """
         _CALLS.require(self._phase, DialogueCall.HELP_NOT_SEEN)
         if isinstance(self._at, ToldState):
             doubted = Remark(self._word(self._at.doubted))
             return [doubted, *self._enter(self._at.otherwise, heard=False)]
         state = self._require_help_state(DialogueCall.HELP_NOT_SEEN)
         if self._reasks_left == 0:
-            return self._give_up("I still do not see that help.")
+            return self._give_up(self._word(state.given_up))
         self._reasks_left -= 1
         self._phase = ConversationPhase.ASKING
         return [
             Ask(
-                text=self._word(state.not_seen),
+                text=self._word(state.not_seen if felt is None else _felt(state, felt)),
                 yes_effect=self._word("I keep watching for it ({attempt})."),
                 no_effect=self._effect(state.otherwise, state.otherwise_effect),
                 timeout_effect=self._word(ATTEMPT_FAILED),
@@ -231,7 +238,7 @@ class Conversation:
                 close = self._close(CloseReason.RESOLVED, Resolution.ROBOT_RETRY, failed=True)
                 return [Remark(said), close]
             case CloseState(resolution=resolution):
-                helped = heard and resolution is Resolution.COLLAB_FINISH
+                helped = heard and resolution in _ROBOT_GOES_ON
                 close = self._close(CloseReason.RESOLVED, resolution, helped=helped)
                 return [Remark(self._word(state.text)), close]
 
@@ -333,3 +340,8 @@ class Conversation:
                 return resolution in _ROBOT_GOES_ON
             case CloseState() | LeaveState():
                 return True
+
+
+def _felt(state: HelpState, felt: Felt) -> str:
+    """What is said of help that was not seen where a basket feels something else."""
+    return state.not_felt.get(felt, state.not_seen)

@@ -16,8 +16,9 @@ itself, and a robot may find out by itself where it is, so that nobody is thanke
 who has not promised or told it.
 
 A person has helped if a change was seen that only a person can have made: the object appeared,
-moved, or came between the fingers, or what was in the way is gone. A promise alone is not help, nor
-is a look that sees no more than the first one did.
+moved, or came between the fingers, the basket got heavier or lighter as was asked, current
+came, or what was in the way is gone. A promise alone is not help, nor is a look that sees no more
+than the first one did.
 """
 
 import math
@@ -53,11 +54,24 @@ class Change(StrEnum):
     """The object came between the fingers."""
     CLEARED = "cleared"
     """What was in the way, or hid the table from the camera, is gone."""
+    LOADED = "loaded"
+    """Something was put into the basket that was to be put in."""
+    UNLOADED = "unloaded"
+    """Something was taken out of the basket that was to be taken out."""
+    CHARGED = "charged"
+    """The robot was plugged in."""
 
     @property
     def by_a_person(self) -> bool:
         """Whether only a person can have made it."""
         return self not in (Change.UNKNOWN, Change.NONE)
+
+
+_FELT = {
+    Expectation.LOADED: Change.LOADED,
+    Expectation.UNLOADED: Change.UNLOADED,
+    Expectation.CHARGED: Change.CHARGED,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +105,9 @@ def change_between(first: LookOutcome | None, now: LookOutcome) -> Change:
         return Change.UNKNOWN
     if Expectation.WAY_CLEAR in cleared:
         return Change.CLEARED
+    for felt, change in _FELT.items():
+        if felt in cleared:
+            return change
     if now.position is None:
         return Change.NONE
     if first.position is None:

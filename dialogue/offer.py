@@ -4,13 +4,14 @@ Source: Blankenburg et al. 2020, Figure 3.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from mend.dialogue import place_branch
 from mend.dialogue.place_branch import Patience
 from mend.dialogue.script import (
     AskState,
     Expectation,
+    Felt,
     Help,
     HelpState,
     Script,
@@ -27,7 +28,8 @@ class Offer:
     """What a script asks for (`question`), what a yes means, and how the help is seen through.
 
     `failed` says how often the robot has failed at this itself; it then no longer asks for `help`.
-    `request` says what to do and `not_seen` asks for it again; once `help` is seen the robot says
+    `request` says what to do and `not_seen` asks for it again, or `not_felt` where a basket feels
+    something else, until it is `given_up`; once `help` is seen the robot says
     `thanks` (or `unchanged`, where it was so before) and the dialogue closes with `resolution`.
     `put_right`, `denied` and `may_be_mistaken` are a script's. `placeable`: there is an object
     that a helper could place instead; else who refuses is only asked whether to leave it out.
@@ -46,6 +48,8 @@ class Offer:
     denied: frozenset[Expectation] = frozenset()
     may_be_mistaken: bool = False
     placeable: bool = True
+    not_felt: Mapping[Felt, str] = field(default_factory=dict)
+    given_up: str = "I still do not see that help."
 
 
 def offer_script(
@@ -101,6 +105,8 @@ def _script(offer: Offer, patience: Patience, variants: Mapping[Sensed, Script])
                 not_seen=offer.not_seen,
                 otherwise=refused,
                 otherwise_effect=refused_effect,
+                not_felt=offer.not_felt,
+                given_up=offer.given_up,
             ),
             FAILED: last,
             **branch,

@@ -30,6 +30,32 @@ class Help(StrEnum):
     """Get what hides the table from the head camera out of its view."""
     TELL_PLACE = "tell_place"
     """Nothing to be done: tell the robot where it is. What it sees there has to agree."""
+    PUT_IN = "put_in"
+    """Put something into the robot's basket."""
+    TAKE_OUT = "take_out"
+    """Take something out of the robot's basket."""
+    CHARGE = "charge"
+    """Plug the robot in."""
+
+
+class Felt(StrEnum):
+    """What a robot feels in its basket while what it needs there is not so.
+
+    A load cell tells how much, and never what.
+    """
+
+    NOTHING = "nothing"
+    """As much as before."""
+    TOO_LITTLE = "too_little"
+    """A little more than before, too little to be anything that was asked for."""
+    TOO_MUCH = "too_much"
+    """More than the basket may hold."""
+    LIGHTER = "lighter"
+    """Less than before, where more was asked for."""
+    HEAVIER = "heavier"
+    """More than before, where less was asked for."""
+    ANOTHER = "another"
+    """Less than before, but not by as much as what was asked for weighed."""
 
 
 class CloseReason(StrEnum):
@@ -110,6 +136,12 @@ class Expectation(StrEnum):
     """The head camera shows the table."""
     LOCATED = "located"
     """The robot knows where it is."""
+    LOADED = "loaded"
+    """The robot feels in its basket what it was to be given, or to be given back."""
+    UNLOADED = "unloaded"
+    """The robot feels that its basket is lighter by what was to be taken out."""
+    CHARGED = "charged"
+    """The robot feels that its battery is being charged."""
 
 
 EXPECTED: Mapping[Help, Expectation] = {
@@ -119,6 +151,9 @@ EXPECTED: Mapping[Help, Expectation] = {
     Help.CLEAR_WAY: Expectation.WAY_CLEAR,
     Help.CLEAR_VIEW: Expectation.VIEW_CLEAR,
     Help.TELL_PLACE: Expectation.LOCATED,
+    Help.PUT_IN: Expectation.LOADED,
+    Help.TAKE_OUT: Expectation.UNLOADED,
+    Help.CHARGE: Expectation.CHARGED,
 }
 """What a robot has to see before a promise counts as kept."""
 
@@ -154,8 +189,9 @@ class HelpState:
 
     `thanks` is said if something was seen to change that only a person can have changed, and
     `unchanged` if it is as promised but was so before; what the robot does next is added to both.
-    While it is not seen, `not_seen` asks whether it still comes; `otherwise` names the state that
-    follows a no, and `otherwise_effect` says what that will do.
+    While it is not seen, `not_seen` asks whether it still comes, or `not_felt` where the robot
+    feels something else; `otherwise` names the state that follows a no, and `otherwise_effect` says
+    what that will do. `given_up` is said once it has been asked about often enough.
     """
 
     text: str
@@ -166,6 +202,8 @@ class HelpState:
     not_seen: str
     otherwise: str
     otherwise_effect: str
+    not_felt: Mapping[Felt, str] = field(default_factory=dict)
+    given_up: str = "I still do not see that help."
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,7 +226,8 @@ class CloseState:
     """Says a last word and closes.
 
     A `robot_retry` reached this way is a failed attempt, and the last word ends with what comes
-    next. `collab_finish` counts as help only after a yes.
+    next. `collab_finish`, and `robot_finish` where a word is all that is wanted, count as help only
+    after a yes.
     """
 
     text: str

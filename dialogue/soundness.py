@@ -94,8 +94,7 @@ def _endless(script: Script) -> Iterator[str]:
 
 def _badly_worded(script: Script) -> Iterator[str]:
     for name, state in script.states.items():
-        for field in _SENTENCES[type(state)]:
-            text = getattr(state, field)
+        for field, text in _sentences_of(state):
             where = f"'{field}' of state '{name}'"
             if not text.strip():
                 yield f"{where} is empty"
@@ -107,6 +106,14 @@ def _badly_worded(script: Script) -> Iterator[str]:
             for each in unknown:
                 known = ", ".join(f"{{{one}}}" for one in sorted(FIELDS))
                 yield f"{where} has the field {{{each}}}; there are only {known}"
+
+
+def _sentences_of(state: State) -> Iterator[tuple[str, str]]:
+    """All that a state says, by what it is called there."""
+    for field in _SENTENCES[type(state)]:
+        yield field, getattr(state, field)
+    if isinstance(state, HelpState):
+        yield from ((f"not_felt: {felt}", text) for felt, text in state.not_felt.items())
 
 
 def _unverified(script: Script) -> Iterator[str]:
@@ -136,6 +143,7 @@ _NOT_SENTENCES = {
     "help",
     "resolution",
     "guess",
+    "not_felt",
 }
 _SENTENCES: dict[type, list[str]] = {
     kind: [field.name for field in fields(kind) if field.name not in _NOT_SENTENCES]

@@ -11,6 +11,8 @@ _GUESSES = ("guess_1", "guess_2", "guess_3")
 FIELDS = frozenset(
     {
         "object",
+        "item",
+        "message",
         "with_object",
         "place",
         "name",
@@ -24,7 +26,8 @@ FIELDS = frozenset(
         *_GUESSES,
     }
 )
-"""`with_object`: ` with the cup` with a blank before it, or nothing where there is no object.
+"""`item`: what is carried for people, and `message`: what they are told.
+`with_object`: ` with the cup` with a blank before it, or nothing where there is no object.
 `why`: what the robot sensed, as a sentence with a blank before it, or nothing. `attempt`:
 `attempt 1 of 3`. `times`: how often this has happened. `again`, `later`, `go_on`: what the robot
 does next after help, after a failed attempt, and if it need not begin anew. `guess_1` to
@@ -37,7 +40,9 @@ def word(text: str, issue: Issue, outlook: Outlook) -> str:
     guesses.update(zip(_GUESSES, map(spoken, issue.guesses), strict=False))
     return text.format(
         **guesses,
-        object=spoken(issue.object or issue.name),
+        item=spoken(issue.item or issue.name),
+        message=issue.message or "",
+        object=spoken(issue.object or issue.item or issue.name),
         with_object=f" with the {spoken(issue.object)}" if issue.object else "",
         place=spoken(issue.place or issue.name),
         name=spoken(issue.name),

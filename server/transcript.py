@@ -69,6 +69,9 @@ DEEDS: dict[Act, str] = {
     Act.RELEASE: "clears the robot's way",
     Act.COVER: "covers the head camera",
     Act.UNCOVER: "clears the head camera's view",
+    Act.PUT_IN: "puts {object} into the robot's basket",
+    Act.TAKE_OUT: "takes {object} out of the robot's basket",
+    Act.CHARGE: "plugs the robot in",
 }
 
 PROMISES: dict[Help, str] = {
@@ -78,7 +81,13 @@ PROMISES: dict[Help, str] = {
     Help.CLEAR_WAY: "the way clear",
     Help.CLEAR_VIEW: "the table again",
     Help.TELL_PLACE: "that it is where it was told",
+    Help.PUT_IN: "something put into its basket",
+    Help.TAKE_OUT: "something taken out of its basket",
+    Help.CHARGE: "current",
 }
+
+_FELT = (Help.PUT_IN, Help.TAKE_OUT, Help.CHARGE)
+"""Help that no camera sees."""
 
 RESOLUTIONS: dict[Resolution, str] = {
     Resolution.HUMAN_FINISH: "the human finished {name}",
@@ -107,6 +116,9 @@ CHANGES: dict[Change, str] = {
     Change.MOVED: ": it has been moved",
     Change.HANDED_OVER: "",
     Change.CLEARED: "",
+    Change.LOADED: "",
+    Change.UNLOADED: "",
+    Change.CHARGED: "",
 }
 
 
@@ -310,17 +322,20 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.HelpAwaited) -> list[Line]:
-        text = f"looks for {_promised(event)} until {event.until:.1f} s"
+        how = "waits to feel" if event.help in _FELT else "looks for"
+        text = f"{how} {_promised(event)} until {event.until:.1f} s"
         return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
     @lines.register
     def _(self, event: ev.HelpVerified) -> list[Line]:
-        text = f"sees {_promised(event)}{CHANGES[event.change]}"
+        how = "feels" if event.help in _FELT else "sees"
+        text = f"{how} {_promised(event)}{CHANGES[event.change]}"
         return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
     @lines.register
     def _(self, event: ev.HelpNotSeen) -> list[Line]:
-        text = f"does not see {_promised(event)}"
+        how = "feel" if event.help in _FELT else "see"
+        text = f"does not {how} {_promised(event)}"
         return [_line(event, self._robot(event.robot), text, Tone.SETBACK)]
 
     @lines.register
@@ -397,7 +412,7 @@ def told_start(run: UUID, tree: str, started: StartedRun) -> str:
 
 def deed_text(intervention: Intervention) -> str:
     """What a person does, as the end of a sentence that begins with who it is."""
-    text = DEEDS[intervention.act].format(object=intervention.object)
+    text = DEEDS[intervention.act].format(object=intervention.object or "something")
     if intervention.act is Act.STEAL and intervention.manner == "pull":
         text = f"pulls {intervention.object} out of the gripper"
     if intervention.act is Act.RELEASE and intervention.object and intervention.place is None:
@@ -417,12 +432,17 @@ def _without(missing: Sequence[ev.MissingPart]) -> str:
     said: dict[str | None, list[str]] = {}
     for each in missing:
         said.setdefault(each.left_out_by, []).append(each.object)
-    parts = (f"without {joined(objects)}{_as_said(by)}" for by, objects in said.items())
+    parts = (
+        f"without {joined(list(dict.fromkeys(objects)))}{_as_said(by)}"
+        for by, objects in said.items()
+    )
     return f"the task is done {joined(list(parts))}"
 
 
 def told_missing(part: ev.MissingPart) -> str:
     """That a part is not at its place at the end, and who said to go on without it."""
+    if part.nowhere:
+        return f"{part.name} was left out{_as_said(part.left_out_by)}"
     return f"{part.object} is not at {part.place}{_as_said(part.left_out_by)}"
 
 

@@ -16,6 +16,9 @@ _ACTS = {
     "hand_over": Act.HAND_OVER,
     "clear_way": Act.RELEASE,
     "clear_view": Act.UNCOVER,
+    "put_in": Act.PUT_IN,
+    "take_out": Act.TAKE_OUT,
+    "charge": Act.CHARGE,
 }
 
 
@@ -73,7 +76,9 @@ def deed(
         return KeptPromise(
             Intervention(act=act, object=promise.object, place=promise.place), delay_s
         )
-    if act is Act.UNCOVER:
+    if act in (Act.PUT_IN, Act.TAKE_OUT):
+        return KeptPromise(Intervention(act=act, object=promise.object), delay_s)
+    if act in (Act.UNCOVER, Act.CHARGE):
         return KeptPromise(Intervention(act=act), delay_s)
     if promise.object is None:
         return None

@@ -55,6 +55,16 @@ class BehaviorNode(StrictModel):
         return self._text("place")
 
     @property
+    def item(self) -> str | None:
+        """What the behavior carries for people, if it carries anything."""
+        return self._text("item")
+
+    @property
+    def message(self) -> str | None:
+        """What the behavior tells people, if it tells anything."""
+        return self._text("message")
+
+    @property
     def needs_help(self) -> bool:
         """Whether a helper has to lend a hand at the end of the behavior."""
         return self.parameters.get("needs_help") is True

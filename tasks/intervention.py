@@ -30,18 +30,33 @@ class Act(StrEnum):
     """Cover the head camera."""
     UNCOVER = "uncover"
     """Clear the view of the head camera."""
+    PUT_IN = "put_in"
+    """Put into a robot's basket what it asks for, or what somebody took out of it on its way."""
+    TAKE_OUT = "take_out"
+    """Take out of a robot's basket what it hands over."""
+    CHARGE = "charge"
+    """Plug in robots that stand with little left in their batteries."""
 
 
-_WITHOUT_OBJECT = (Act.BLOCK, Act.RELEASE, Act.COVER, Act.UNCOVER)
+_WITHOUT_OBJECT = (
+    Act.BLOCK,
+    Act.RELEASE,
+    Act.COVER,
+    Act.UNCOVER,
+    Act.PUT_IN,
+    Act.TAKE_OUT,
+    Act.CHARGE,
+)
 
 
 class Intervention(StrictModel):
     """One thing that a person does in a world.
 
-    `object` is required by every act but `block`, `release`, `cover` and `uncover`; `place` (a name
-    of the scene) by `place`; `to` by `move`. A `release` with both `object` and `place` frees that
-    place as well, one with an `object` alone puts that aside. `manner` says how `steal` takes the
-    object: `vanish` at once, or `pull` it out of the gripper by force.
+    `object` is required by every act but `block`, `release`, `cover`, `uncover` and `charge`, and
+    `put_in` and `take_out`, which are about any robot that asks for it where they name none;
+    `place` (a name of the scene) by `place`; `to` by `move`. A `release` with both `object` and
+    `place` frees that place as well, one with an `object` alone puts that aside. `manner` says how
+    `steal` takes the object: `vanish` at once, or `pull` it out of the gripper by force.
     """
 
     act: Annotated[Act, Field(strict=False)]

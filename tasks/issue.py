@@ -26,7 +26,8 @@ class Issue:
     `node` is the leaf's path (`/0/2`); `step` is the behavior's step in which it was seen,
     0 before the first. `reason` is a clause that says what the robot sensed, empty if it does not
     say; `sensed` how it came to know. `interrupts`: the robot does not go on by itself.
-    `guesses`: where it may be if it is lost, likeliest first (`at F1-101`).
+    `guesses`: where it may be if it is lost, likeliest first (`at F1-101`). `item`: what the leaf
+    carries for people, and `message`: what it tells them, if it does.
     """
 
     kind: str
@@ -40,3 +41,5 @@ class Issue:
     sensed: Sensed = Sensed.SEEN
     interrupts: bool = True
     guesses: tuple[str, ...] = ()
+    item: str | None = None
+    message: str | None = None

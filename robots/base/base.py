@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mend.maps.building.cabin import CABIN_M
+from mend.robots.base.basket import Basket, LoadSense, NoBasket
+from mend.robots.base.battery import Battery, MainsPower
 from mend.robots.base.body import BaseBody, BasePose
 from mend.robots.base.elevators import Elevators, NoElevators
 from mend.robots.base.jumps import Jumps
@@ -40,12 +42,17 @@ class Base(Effector[BaseBody]):
         ways: Ways,
         elevators: Elevators | None = None,
         whereabouts: Whereabouts | None = None,
+        basket: Basket | None = None,
+        battery: Battery | None = None,
     ) -> None:
         """`ways` says which points to pass to a goal, `whereabouts` if it may be lost."""
         warm_up()
         super().__init__(body)
         self.ways = ways
         self.elevators = elevators or NoElevators()
+        self.basket = basket or NoBasket()
+        self.battery: Battery = battery or MainsPower()
+        self.load = LoadSense(self.basket)
         self.whereabouts: Whereabouts = whereabouts or AlwaysKnown()
         self.at_rest = True
         self._speed = 1.0

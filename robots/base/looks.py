@@ -1,20 +1,24 @@
-"""The looks of a base: where it is, and whether its way is free."""
+"""The looks of a base: where it is, whether its way is free, and what its basket weighs."""
+
+from collections.abc import Callable
 
 from mend.robots.base.base import Base
 from mend.robots.base.behaviors.execution import BaseExecution
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.routine import Routine
-from mend.robots.link.messages import Look, Looked, Position
+from mend.robots.link.messages import FeltLoad, Look, Looked, Position
 
 _PERIOD_S = 0.5
 
 
-def answer(base: Base, command: str, fulfilled: bool | None) -> Looked:
+def answer(
+    base: Base, command: str, fulfilled: bool | None, felt: FeltLoad | None = None
+) -> Looked:
     """Where the base is; it sees no objects, and judges no results."""
     here = base.body.pose()
     at = Position(x=here.x, y=here.y, z=here.z)
-    return Looked(command=command, objects={}, gripper=at, fulfilled=fulfilled)
+    return Looked(command=command, objects={}, gripper=at, fulfilled=fulfilled, felt=felt)
 
 
 def look_as_told(
@@ -23,6 +27,10 @@ def look_as_told(
     """The routine of a `look` command. Raises `CommandError` for what no base can see."""
     if look.expect == "located":
         return _look_where(base, command, look)
+    if look.expect in ("loaded", "unloaded"):
+        return _feel(base, command, look.within_s, held)
+    if look.expect == "charged":
+        return _until(base, command, look.within_s, lambda: base.battery.charging)
     if look.expect not in (None, "way_clear"):
         raise CommandError(f"a base that drives cannot look for '{look.expect}'")
 
@@ -41,21 +49,38 @@ def look_as_told(
     return routine()
 
 
+def _feel(base: Base, command: str, within_s: float, held: AnyExecution | None) -> Routine[Looked]:
+    """Whether the basket holds what the step that waits needs, or else what was in it before."""
+
+    def felt() -> FeltLoad | None:
+        return held.felt() if isinstance(held, BaseExecution) else base.load.as_remembered()
+
+    end_s = base.body.time_s() + within_s
+    while (told := felt()) is not None:
+        left_s = end_s - base.body.time_s()
+        if left_s <= 1e-9:
+            return answer(base, command, fulfilled=False, felt=told)
+        yield from base.wait(min(_PERIOD_S, left_s))
+    return answer(base, command, fulfilled=True)
+
+
 def _look_where(base: Base, command: str, look: Look) -> Routine[Looked]:
     """Whether it knows where it is, or, with a guess, sees that it is there."""
-    end_s = base.body.time_s() + look.within_s
     if look.guess is not None:
         return _look_there(base, command, look.guess)
 
-    def routine() -> Routine[Looked]:
-        while base.whereabouts.is_lost:
-            left_s = end_s - base.body.time_s()
-            if left_s <= 1e-9:
-                return answer(base, command, fulfilled=False)
-            yield from base.wait(min(_PERIOD_S, left_s))
-        return answer(base, command, fulfilled=True)
+    return _until(base, command, look.within_s, lambda: not base.whereabouts.is_lost)
 
-    return routine()
+
+def _until(base: Base, command: str, within_s: float, so: Callable[[], bool]) -> Routine[Looked]:
+    """Whether something comes to be so in time."""
+    end_s = base.body.time_s() + within_s
+    while not so():
+        left_s = end_s - base.body.time_s()
+        if left_s <= 1e-9:
+            return answer(base, command, fulfilled=False)
+        yield from base.wait(min(_PERIOD_S, left_s))
+    return answer(base, command, fulfilled=True)
 
 
 def _look_there(base: Base, command: str, guess: str) -> Routine[Looked]:

@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from mend.robots.base.base import Base
+from mend.robots.base.basket import Basket
+from mend.robots.base.battery import Battery
 from mend.robots.base.behaviors.behavior import (
     BaseBehavior,
     BaseSituation,
@@ -52,12 +54,14 @@ class BaseSubsystem:
         ways: Ways | None = None,
         elevators: Elevators | None = None,
         whereabouts: Whereabouts | None = None,
+        basket: Basket | None = None,
+        battery: Battery | None = None,
     ) -> None:
         """It takes those of bases. Without `ways` it goes straight to each goal.
 
-        Without `whereabouts` it always believes its body's pose.
+        Without `whereabouts` it always believes its body's pose, without `basket` it has none.
         """
-        self.effector = Base(body, ways or StraightWays(), elevators, whereabouts)
+        self.effector = Base(body, ways or StraightWays(), elevators, whereabouts, basket, battery)
         self._places = {name: _pose(each) for name, each in catalogue.places.items()}
         self._behaviors = of_kind(behaviors, BaseBehavior)  # type: ignore[type-abstract]
         self._monitors = for_view(monitors.values(), BaseView)
@@ -75,6 +79,7 @@ class BaseSubsystem:
             places=self._places,
             target=self._target(getattr(parameters, "place", None), start.target),
             ways=self.effector.ways,
+            basket=self.effector.basket,
         )
         steps = behavior.steps(parameters, situation)
         if not self.effector.whereabouts.is_lost:

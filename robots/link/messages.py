@@ -148,6 +148,15 @@ class Detection(Message):
 LASER = "laser"
 """What a `Detection` has for a camera where a laser saw what it is about."""
 
+BASKET = "basket"
+"""And where the load cell of a basket felt it."""
+
+GAUGE = "gauge"
+"""And where the gauge of a battery told it."""
+
+LISTENING = "listening"
+"""And where it is that nobody has said anything."""
+
 PoseValues = tuple[
     Coordinate, Coordinate, Coordinate, Coordinate, Coordinate, Coordinate, Coordinate
 ]
@@ -274,6 +283,10 @@ class FinishedResult(Message):
     place: Word
 
 
+FeltLoad = Literal["nothing", "too_little", "too_much", "lighter", "heavier", "another"]
+"""What a basket feels that is not what was asked for: less or more than it, or something else."""
+
+
 class Looked(Message):
     """What a look saw, in answer to a `look` command.
 
@@ -284,7 +297,7 @@ class Looked(Message):
     whose place is seen without the object; what something hides is in neither. `held`: the object
     that is between the fingers. `blind`: why the head camera showed nothing of the table, or of
     where the object that was just put down is to be, so that the look tells nothing of what is on
-    the table; None if it did.
+    the table; None if it did. `felt`: what a basket felt where that was not what was expected.
     """
 
     type: Literal["looked"] = "looked"
@@ -296,6 +309,7 @@ class Looked(Message):
     gone: Annotated[list[FinishedResult], Field(max_length=MOST)] = []
     held: Word | None = None
     blind: Sentence | None = None
+    felt: FeltLoad | None = None
 
 
 class Held(Message):
@@ -401,7 +415,17 @@ class Resume(Message):
     object_at: tuple[float, float] | None = None
 
 
-Expected = Literal["at_place", "in_reach", "in_gripper", "way_clear", "view_clear", "located"]
+Expected = Literal[
+    "at_place",
+    "in_reach",
+    "in_gripper",
+    "way_clear",
+    "view_clear",
+    "located",
+    "loaded",
+    "unloaded",
+    "charged",
+]
 
 
 class Look(Message):
@@ -411,8 +435,10 @@ class Look(Message):
     have passed. `at_place`: `object` rests at `place`; `in_reach`: `object` rests within the
     graspable range; `in_gripper`: take `object` from a person (move to the hand-over pose, open,
     close once it is seen between the fingers); `way_clear`: nothing is in the arm's way;
-    `view_clear`: the head camera shows the table; `located`: it knows where it is. A person has
-    told `guess`, one of a detection's `guesses`: then what it sees has to agree with that.
+    `view_clear`: the head camera shows the table; `located`: it knows where it is; `loaded` and
+    `unloaded`: its basket weighs what the step that waits needs, or what it weighed before;
+    `charged`: current comes into its battery. A
+    person has told `guess`, one of a detection's `guesses`: then what it sees has to agree with it.
     `rate`: simulated worlds let their clock run so fast while they look again and again; None is
     the run's own speed. `finished`: the results to judge by what the last pictures show.
     """

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from mend.dialogue.evidence import Change
 from mend.dialogue.outlook import Outlook
-from mend.dialogue.script import CloseReason, Expectation, Help
+from mend.dialogue.script import CloseReason, Expectation, Felt, Help
 from mend.robots.link.messages import Detection
 from mend.server.access.roles import Role
 from mend.tasks.intervention import Intervention
@@ -139,7 +139,8 @@ class IssueRaised(NodeEvent):
     """A monitor detected a fault. `picture` names the image at `/api/pictures/{picture}`.
 
     `last_seen`: where the last look before it saw the object (base frame, metres). `outlook`: which
-    attempt this is, of how many, and what follows if it fails.
+    attempt this is, of how many, and what follows if it fails. `item`: what the leaf carries for
+    people, and `message`: what it tells them, if it does.
     """
 
     type: Literal["issue_raised"] = "issue_raised"
@@ -154,6 +155,8 @@ class IssueRaised(NodeEvent):
     picture: UUID | None = None
     last_seen: tuple[float, float, float] | None = None
     outlook: Outlook | None = None
+    item: str | None = None
+    message: str | None = None
 
 
 class ClipPicture(EventModel):
@@ -303,10 +306,11 @@ class HelpVerified(DialogueEvent):
 
 
 class HelpNotSeen(DialogueEvent):
-    """The robot did not see the promised help in time."""
+    """The robot did not see the promised help in time; `felt`: what its basket felt instead."""
 
     type: Literal["help_not_seen"] = "help_not_seen"
     help: Help
+    felt: Felt | None = None
 
 
 class Resolved(DialogueEvent):
@@ -447,6 +451,8 @@ class MissingPart(EventModel):
     """A leaf whose object is not at its place at the end, as it was left out.
 
     `left_out_by`: the helper who said so; None in the journal of an older Mend, which did not ask.
+    `nowhere`: the leaf handles no object that could be seen at a place; `object` is then what it
+    carries, or its own name.
     """
 
     node: str
@@ -454,6 +460,7 @@ class MissingPart(EventModel):
     object: str
     place: str
     left_out_by: str | None = None
+    nowhere: bool = False
 
 
 class UnseenPart(EventModel):

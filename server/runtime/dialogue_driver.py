@@ -5,7 +5,7 @@ from typing import Literal
 from uuid import UUID, uuid4
 
 from mend.dialogue.outlook import Outlook
-from mend.dialogue.script import Ask, Turn
+from mend.dialogue.script import Ask, Felt, Turn
 from mend.errors import ConflictError, NotFoundError
 from mend.server.dialogues.answers import AnswerSource
 from mend.server.dialogues.escalation import (
@@ -369,7 +369,9 @@ class DialogueDriver:
             verified = make.help_verified(awaiting, change)
             await self._converse(dialogue, f"seen:{change}", [verified], proxy, dialogue.helper)
         elif has_come(self._context.clock, awaiting.until):
-            await self._converse(dialogue, "not_seen", [make.help_not_seen(awaiting)], proxy)
+            felt = None if proxy.felt is None else Felt(proxy.felt)
+            call = "not_seen" if felt is None else f"not_seen:{felt}"
+            await self._converse(dialogue, call, [make.help_not_seen(awaiting, felt)], proxy)
 
     @property
     def _rate(self) -> float | None:

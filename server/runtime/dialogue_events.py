@@ -6,7 +6,7 @@ from typing import Any
 from uuid import UUID, uuid4
 
 from mend.dialogue.evidence import Change, LookOutcome
-from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Remark, Turn
+from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Felt, Remark, Turn
 from mend.server.journal import events as ev
 from mend.tasks.resolution import Resolution
 
@@ -126,8 +126,8 @@ class DialogueEvents:
     def help_verified(self, awaiting: ev.HelpAwaited, change: Change) -> ev.HelpVerified:
         return ev.HelpVerified(**self._fields(), help=awaiting.help, change=change)
 
-    def help_not_seen(self, awaiting: ev.HelpAwaited) -> ev.HelpNotSeen:
-        return ev.HelpNotSeen(**self._fields(), help=awaiting.help)
+    def help_not_seen(self, awaiting: ev.HelpAwaited, felt: Felt | None) -> ev.HelpNotSeen:
+        return ev.HelpNotSeen(**self._fields(), help=awaiting.help, felt=felt)
 
     def aborted(self) -> ev.DialogueClosed:
         return ev.DialogueClosed(**self._fields(), reason=CloseReason.ABORTED)

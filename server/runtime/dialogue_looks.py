@@ -27,6 +27,16 @@ FIRST_LOOK_S = 1.0
 WATCH_PERIOD_S = 2.0
 """How often the robot looks whether what was right when it asked has changed."""
 
+_WITHOUT_OBJECT = (
+    Expectation.WAY_CLEAR,
+    Expectation.VIEW_CLEAR,
+    Expectation.LOCATED,
+    Expectation.LOADED,
+    Expectation.UNLOADED,
+    Expectation.CHARGED,
+)
+"""What a look may be asked to wait for that is about no object."""
+
 HELP_TAKES_S = 10.0
 """So long a helper is given where a look could not tell help that is still to come from none."""
 
@@ -192,7 +202,7 @@ class DialogueLooks:
         named = dialogue.raised.object is not None
         if Expectation.IN_REACH in watched and named:
             return Expectation.IN_REACH
-        for each in (Expectation.WAY_CLEAR, Expectation.VIEW_CLEAR, Expectation.LOCATED):
+        for each in _WITHOUT_OBJECT:
             if each in watched:
                 return each
         if Expectation.AT_PLACE in watched and named and dialogue.raised.place is not None:

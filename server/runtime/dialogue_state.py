@@ -10,8 +10,8 @@ from uuid import UUID
 from mend.dialogue.conversation import Conversation
 from mend.dialogue.evidence import Change, PutRight
 from mend.dialogue.outlook import Outlook
-from mend.dialogue.script import CloseReason, Expectation, Script, Turn
-from mend.robots.link.messages import LASER, Detection
+from mend.dialogue.script import CloseReason, Expectation, Felt, Script, Turn
+from mend.robots.link.messages import BASKET, LASER, Detection
 from mend.server.journal import events as ev
 from mend.tasks.issue import Issue, Sensed
 
@@ -161,9 +161,9 @@ class DialogueState:
         self.advance(f"seen:{event.change}")
 
     @_apply.register
-    def _(self, _event: ev.HelpNotSeen) -> None:
+    def _(self, event: ev.HelpNotSeen) -> None:
         self.awaiting = None
-        self.advance("not_seen")
+        self.advance("not_seen" if event.felt is None else f"not_seen:{event.felt}")
 
     @_apply.register
     def _(self, event: ev.Resolved) -> None:
@@ -179,12 +179,15 @@ class DialogueState:
 def converse(conversation: Conversation, call: str) -> list[Turn]:
     """Make a call by its name: `open`, `yes`, `no`, `not_seen`, `silence`, `abort`.
 
-    Two have arguments: `seen:moved` (a change) and `put_right:at_place:moved` (what is seen, too).
+    Three may have arguments: `seen:moved` (a change), `put_right:at_place:moved` (what is seen,
+    too) and, where a basket felt something else, `not_seen:lighter`.
     """
     verb, *arguments = call.split(":")
     match verb, arguments:
         case "yes" | "no", []:
             return conversation.answer("yes" if verb == "yes" else "no")
+        case "not_seen", [felt]:
+            return conversation.help_not_seen(Felt(felt))
         case "seen", [change]:
             return conversation.help_seen(Change(change))
         case "put_right", [seen, change]:
@@ -223,13 +226,15 @@ def issue_of(raised: ev.IssueRaised) -> Issue:
         reason="" if raised.detection is None else raised.detection.explanation,
         sensed=_sensed(raised.detection),
         guesses=() if raised.detection is None else tuple(raised.detection.guesses),
+        item=raised.item,
+        message=raised.message,
     )
 
 
 def _sensed(detection: Detection | None) -> Sensed:
     if detection is None:
         return Sensed.SEEN
-    if detection.felt:
+    if detection.felt or detection.camera == BASKET:
         return Sensed.FELT
     if detection.camera == LASER:
         return Sensed.BY_LASER

@@ -36,7 +36,9 @@ class Promises:
         raised = dialogue.raised
         part = None if raised.detection is None else raised.detection.part
         in_the_way = part if part in state.scene.objects else None
-        promise = Promise(str(awaiting.help), raised.object, raised.place, in_the_way)
+        promise = Promise(
+            str(awaiting.help), raised.item or raised.object, raised.place, in_the_way
+        )
         finished = state.tree.finished_objects()
         # Nobody takes for the promised object what stands finished at its place.
         others = [name for name in state.scene.objects if name not in {raised.object, *finished}]

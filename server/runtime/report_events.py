@@ -108,13 +108,16 @@ class ReportEvents:
         picture_id = uuid4() if picture else None
         if picture_id is not None and picture is not None:
             pictures[picture_id] = picture
+        leaf = state.tree.leaf_definition(execution.leaf)
         raised = ev.IssueRaised(
             **self._context.stamp(),
             **self.node(execution.leaf),
             robot=proxy.robot,
             issue=body.issue,
-            object=state.tree.leaf_definition(execution.leaf).object,
-            place=state.tree.leaf_definition(execution.leaf).place,
+            object=leaf.object,
+            place=leaf.place,
+            item=leaf.item,
+            message=leaf.message,
             execution=execution.id,
             step=body.step,
             interrupts=body.interrupts,

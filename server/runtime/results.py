@@ -33,17 +33,19 @@ def _results_of(state: RunState) -> dict[FinishedResult, int]:
 
 def missing_parts(state: RunState) -> list[ev.MissingPart]:
     """What is not at its place because a helper said to go on without it."""
-    tree = state.tree
-    return [
-        ev.MissingPart(
-            node=event.node,
-            name=event.name,
-            object=tree.leaf_definition(leaf).object or event.name,
-            place=tree.leaf_definition(leaf).place or event.name,
-            left_out_by=event.helper,
-        )
-        for leaf, event in sorted(state.left_out.items())
-    ]
+    return [_missing(state, leaf, event) for leaf, event in sorted(state.left_out.items())]
+
+
+def _missing(state: RunState, leaf: int, left_out: ev.NodeLeftOut) -> ev.MissingPart:
+    definition = state.tree.leaf_definition(leaf)
+    return ev.MissingPart(
+        node=left_out.node,
+        name=left_out.name,
+        object=definition.object or definition.item or left_out.name,
+        place=definition.place or left_out.name,
+        left_out_by=left_out.helper,
+        nowhere=definition.object is None,
+    )
 
 
 def unseen_parts(state: RunState, there: Collection[FinishedResult]) -> list[ev.UnseenPart]:

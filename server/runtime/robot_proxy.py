@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from mend.robots.arm.shared_space import Flat
 from mend.robots.link.messages import (
     CommandBody,
+    FeltLoad,
     FinishedResult,
     Hello,
     Hold,
@@ -115,6 +116,8 @@ class RobotProxy:
     """Of the results that the last look judged, those that it saw to be so."""
     blind: str | None = None
     """Why the last look saw nothing of the table."""
+    felt: FeltLoad | None = None
+    """What its basket felt at the last look, where that was not what was looked for."""
 
     @property
     def room(self) -> RoomLimits | None:
@@ -271,7 +274,7 @@ class RobotProxy:
             self.seen = {name: _in_scene(self.frame, each) for name, each in looked.objects.items()}
             self.seen_at = time
             self.last_seen |= {name: (time, each) for name, each in self.seen.items()}
-        self.held = looked.held
+        self.held, self.felt = looked.held, looked.felt
         self.there = frozenset(looked.there)
         self.gripper = (
             *self.frame.to_scene(looked.gripper.x, looked.gripper.y),

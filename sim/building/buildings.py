@@ -17,6 +17,7 @@ from mend.sim.building.building_robot import RADIUS_M
 from mend.sim.building.carrying import Carrying
 from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.furniture import Furniture, Room, kept_clear
+from mend.sim.building.goods import Goods
 from mend.sim.building.options import BuildingOptions, LocalizerKind
 from mend.sim.building.scene import NEEDS_M
 from mend.sim.building.scene_checks import bases_of, check_scene, ways_of
@@ -74,6 +75,12 @@ class Buildings:
             rng,
             Furniture(_rooms(building, places, stand), options.unmapped, rng),
             Carrying(options.carried_every_s, rng),
+            Goods(setup.seed, options.forgetful, rng),
+            {
+                name: FloorPose(floor, x, y)
+                for floor, each in places.items()
+                for name, (x, y) in each.items()
+            },
             _maps(building, places, options.localizer),
         )
         robots = [
@@ -89,6 +96,8 @@ class Buildings:
                         ways_of(building, frame, number),
                         world.elevators.of_robot(number),
                         body.whereabouts,
+                        world.baskets[number],
+                        world.batteries[number],
                     )
                 ],
             )

@@ -29,5 +29,10 @@ class BuildingOptions(StrictModel):
     """How robots know where they are: by laser and wheels, or exactly."""
     unmapped: Annotated[float, Field(ge=0.0, le=0.5, strict=False)] = 0.2
     """Of what lasers see, so much is furniture that is on no map, drawn by the seed."""
+    forgetful: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
+    """How often who said that they put something into a basket, or take it out, forgets it, or
+    takes something else."""
+    battery_wh: Annotated[float, Field(ge=0.0, le=1e6, strict=False)] = 0.0
+    """What a robot's battery holds when it begins; 0 never runs out."""
     carried_every_s: Annotated[float, Field(ge=0.0, le=1e6, strict=False)] = 0.0
     """About so often somebody carries a robot that drives to elsewhere on its floor; 0 is never."""

@@ -10,11 +10,14 @@ from mend.maps.building.building import Building, Floor
 from mend.maps.building.cabin import CABIN_M, stop_of
 from mend.maps.building.clearance import clearance_m, distances_m, lane_clearance_m
 from mend.robots.base.behaviors.behavior import BaseBehavior
+from mend.robots.base.behaviors.charge import Charge
 from mend.robots.base.body import BasePose
 from mend.robots.base.floor_ways import FloorWays
 from mend.robots.execution.behavior import of_kind
 from mend.robots.execution.command_error import CommandError
 from mend.sim.building.building_robot import LIMITS
+from mend.sim.building.chargers import is_at_charger
+from mend.sim.building.item_checks import check_items
 from mend.sim.building.scene import NEEDS_M
 from mend.sim.building.setting import read_setting
 from mend.tasks.definition import BehaviorNode, GoalNode
@@ -39,6 +42,8 @@ def check_scene(scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]) -> list[
         *_without_room(scene, building),
         *_not_for_bases(nodes),
         *_out_of_reach(scene, building, nodes),
+        *_no_chargers(scene, building, nodes),
+        *check_items(nodes, len(bases_of(scene))),
     ]
 
 
@@ -165,6 +170,21 @@ def _out_of_reach(
                 SceneProblem(("places", name), f"no robot gets to '{name}': {reasons[0]}")
             )
     return problems
+
+
+def _no_chargers(
+    scene: Scene, building: Building, nodes: Sequence[GoalNode | BehaviorNode]
+) -> Iterator[SceneProblem]:
+    """Places where robots are to be charged, and are not."""
+    charged = [n.place for n in nodes if isinstance(n, BehaviorNode) and n.behavior == Charge.name]
+    for name in dict.fromkeys(each for each in charged if each in scene.places):
+        assert name is not None, "it is one of the places"
+        pose = scene.places[name].pose
+        floor = building.floor_at(pose.z or 0.0)
+        if floor is not None and not is_at_charger(building, floor, pose.x, pose.y):
+            yield SceneProblem(
+                ("places", name), f"no charger is at '{name}', where a robot is to charge"
+            )
 
 
 def _why_not(ways: FloorWays, here: BasePose, to: BasePose) -> str | None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mend.documents.strict_model import StrictModel
 from mend.maps.building.building import Building, DoorOpening
 from mend.maps.building.clearance import distances_m
+from mend.robots.base.battery import LOW
 from mend.robots.base.body import RangeScan
 from mend.sim.building import laser
 from mend.sim.building.belief import Belief, BeliefSnapshot, FloorMap
@@ -19,14 +20,18 @@ from mend.sim.building.bystander import RADIUS_M as PERSON_RADIUS_M
 from mend.sim.building.bystander import Bystander
 from mend.sim.building.cabin import Cabin, Call
 from mend.sim.building.carrying import Carrying
+from mend.sim.building.chargers import is_at_charger
 from mend.sim.building.door import WorldDoor
 from mend.sim.building.draws import read_draws, written_draws
 from mend.sim.building.elevator_bank import CabinSnapshot, ElevatorBank
 from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.furniture import Furniture, Row
+from mend.sim.building.goods import Goods, ItemSnapshot, WishSnapshot
 from mend.sim.building.laser_noise import measured_m
 from mend.sim.building.odometry import Odometer, OdometerSnapshot
 from mend.sim.building.options import BuildingOptions
+from mend.sim.building.robot_basket import BasketSnapshot, RobotBasket
+from mend.sim.building.robot_battery import BatterySnapshot, RobotBattery
 from mend.tasks.frames import Frame
 from mend.tasks.intervention import Act, Intervention
 
@@ -40,6 +45,8 @@ _FURNITURE_MOVES_EVERY_S = 60.0
 """So often somebody puts a piece of furniture elsewhere, on each floor."""
 _FURNITURE_FROM_ROBOTS_M = 1.0
 _TRIES_TO_PUT_DOWN = 20
+_BEFORE_PERSON_M = 1.5
+"""Who is at a place reaches the basket of a robot that stands so near to it."""
 _HELD_OPEN_S = 30.0
 """What people opened for a robot falls shut after so long, once nobody is there."""
 
@@ -54,6 +61,10 @@ class WorldSnapshot(StrictModel):
     cabins: dict[str, CabinSnapshot]
     odometers: list[OdometerSnapshot]
     beliefs: list[BeliefSnapshot | None]
+    items: dict[str, ItemSnapshot]
+    wishes: dict[int, WishSnapshot]
+    baskets: list[BasketSnapshot]
+    batteries: list[BatterySnapshot]
     furniture: dict[str, list[Row]]
     furniture_moves_s: float
     carries_s: float | None
@@ -75,9 +86,14 @@ class BuildingWorld:
         rng: np.random.Generator,
         furniture: Furniture,
         carrying: Carrying,
+        goods: Goods,
+        places: Mapping[str, FloorPose],
         maps: Mapping[str, FloorMap] | None = None,
     ) -> None:
-        """Robots find their way by `maps`; without, they know where they are."""
+        """Robots find their way by `maps`; without, they know where they are.
+
+        `places`: where people are, by the names that robots know.
+        """
         self.building = building
         self.elevators = ElevatorBank(building)
         self.wrong_floors = options.wrong_floors
@@ -97,9 +113,13 @@ class BuildingWorld:
         self._furniture = furniture
         self._furniture_moves_s = _FURNITURE_MOVES_EVERY_S
         self._carrying = carrying
+        self.goods = goods
+        self._places = places
         self._scans: dict[BuildingRobot, RangeScan] = {}
         senses = Senses(self.time_s, self._height_m, self._scan, self.advance_cycle)
         self.robots = [self._robot(*start, senses, maps) for start in starts]
+        self.batteries = [RobotBattery(options.battery_wh) for _ in self.robots]
+        self.baskets = [RobotBasket(goods, each, goods.seed) for each in range(len(self.robots))]
 
     def _robot(
         self,
@@ -125,8 +145,8 @@ class BuildingWorld:
         self._move_furniture()
         if self._carrying.is_due(self._time_s):
             self._carry_one()
-        for robot in self.robots:
-            self._drive(robot)
+        for robot, battery in zip(self.robots, self.batteries, strict=True):
+            self._use_battery(robot, battery)
         self.elevators.pass_time(self._time_s, self.robots, self._circles)
         for robot in self.robots:
             self._scan(robot)
@@ -138,6 +158,20 @@ class BuildingWorld:
         for floor in self.building.floors:
             stand = [(x, y) for x, y, _ in self._circles(floor)]
             self._furniture.move_one(floor, stand, _FURNITURE_FROM_ROBOTS_M)
+
+    def _use_battery(self, robot: BuildingRobot, battery: RobotBattery) -> None:
+        """Drive as far as the battery allows it."""
+        before = robot.at
+        if battery.empty:
+            robot.bump()
+        else:
+            self._drive(robot)
+        if not battery.endless:
+            battery.docked = not robot.moving and is_at_charger(
+                self.building, robot.at.floor, robot.at.x, robot.at.y
+            )
+            driven_m = math.hypot(robot.at.x - before.x, robot.at.y - before.y)
+            battery.pass_time(PERIOD_S, driven_m)
 
     def _drive(self, robot: BuildingRobot) -> None:
         wanted = robot.next_pose()
@@ -229,14 +263,43 @@ class BuildingWorld:
                 return
 
     def intervene(self, intervention: Intervention) -> str:
-        """Somebody steps before the first robot that drives, or makes way and opens the door."""
+        """Somebody blocks the first robot that drives, makes way, or handles what robots carry."""
         match intervention.act:
             case Act.BLOCK:
                 return self._step_in_the_way()
             case Act.RELEASE:
                 return self._make_way()
+            case Act.PUT_IN:
+                return self.goods.put_in(intervention.object, self._stands_at)
+            case Act.TAKE_OUT:
+                return self.goods.take_out(intervention.object, self._stands_at)
+            case Act.CHARGE:
+                return self._plug_in()
+            case Act.STEAL:
+                return self.goods.steal(intervention.object)
             case act:
                 return f"there is nothing in a building for which anybody could do '{act}'"
+
+    def _stands_at(self, number: int, place: str | None) -> bool:
+        """Whether a robot really stands, and before who is at a place, where one is named."""
+        robot = self.robots[number]
+        if robot.moving or place is None:
+            return not robot.moving
+        at = self._places.get(place)
+        if at is None or robot.at.floor != at.floor:
+            return False
+        return math.hypot(robot.at.x - at.x, robot.at.y - at.y) <= _BEFORE_PERSON_M
+
+    def _plug_in(self) -> str:
+        """Somebody plugs in all robots that stand with little left."""
+        low = [
+            battery
+            for robot, battery in zip(self.robots, self.batteries, strict=True)
+            if battery.share < LOW and not robot.moving and robot.at.floor in self.building.floors
+        ]
+        for each in low:
+            each.plugged = True
+        return "" if low else "no robot that stands has little left in its battery"
 
     def _step_in_the_way(self) -> str:
         driving = next((each for each in self.robots if each.moving), None)
@@ -298,6 +361,7 @@ class BuildingWorld:
     # --- What it is rebuilt from ---
 
     def snapshot(self) -> dict[str, Any]:
+        items, wishes = self.goods.snapshot()
         kept = WorldSnapshot(
             time_s=self._time_s,
             robots=[(e.at.floor, e.at.x, e.at.y, e.at.yaw) for e in self.robots],
@@ -308,6 +372,10 @@ class BuildingWorld:
             beliefs=[
                 None if each.belief is None else each.belief.snapshot() for each in self.robots
             ],
+            items=items,
+            wishes=wishes,
+            baskets=[each.snapshot() for each in self.baskets],
+            batteries=[each.snapshot() for each in self.batteries],
             furniture=self._furniture.rows(),
             furniture_moves_s=self._furniture_moves_s,
             carries_s=self._carrying.due_s,
@@ -323,6 +391,11 @@ class BuildingWorld:
         if kept.doors.keys() != self._doors.keys():
             raise ValueError("the snapshot has other doors than the building")
         self.elevators.restore(kept.cabins)
+        self.goods.restore(kept.items, kept.wishes)
+        for basket, was in zip(self.baskets, kept.baskets, strict=True):
+            basket.restore(was)
+        for battery, held in zip(self.batteries, kept.batteries, strict=True):
+            battery.restore(held)
         self._furniture.restore(kept.furniture)
         self._furniture_moves_s = kept.furniture_moves_s
         self._carrying.due_s = kept.carries_s

@@ -36,6 +36,8 @@ class BuildingBench:
         localizer: str = "exact",
         unmapped: float = 0.0,
         carried_every_s: float = 0.0,
+        forgetful: float = 0.0,
+        battery_wh: float = 0.0,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
         setup = WorldSetup(
@@ -49,6 +51,8 @@ class BuildingBench:
                 "localizer": localizer,
                 "unmapped": unmapped,
                 "carried_every_s": carried_every_s,
+                "forgetful": forgetful,
+                "battery_wh": battery_wh,
             },
         )
         self.group: SharedWorld = BUILDINGS.create_agents(setup)
@@ -66,7 +70,8 @@ class BuildingBench:
         agent = next(each for each in self.group.agents if each.name == robot)
         agent.handle(f"c{self._sent}", body)
 
-    def go(self, robot: str, place: str, behavior: str = "go_to") -> None:
+    def go(self, robot: str, place: str, behavior: str = "go_to", **more: str) -> None:
+        """Start a behavior at a place; `more` are its other parameters."""
         pose = self.scene.places[place].pose
         x, y = frames_of(self.scene)[robot].to_robot(pose.x, pose.y)
         self.send(
@@ -75,7 +80,7 @@ class BuildingBench:
                 execution=f"e{self._sent + 1}",
                 node="/0",
                 behavior=behavior,
-                parameters={"place": place},
+                parameters={"place": place, **more},
                 target=Location(x=x, y=y, z=pose.z, yaw=pose.yaw),
             ),
         )

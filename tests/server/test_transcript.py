@@ -10,7 +10,14 @@ import pytest
 from mend.dialogue.script import CloseReason, Help
 from mend.server.access.roles import Role
 from mend.server.journal import events as ev
-from mend.server.transcript import Line, Tone, Transcript, grouped
+from mend.server.transcript import (
+    Line,
+    Tone,
+    Transcript,
+    finished_text,
+    grouped,
+    told_missing,
+)
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.resolution import Resolution
 from mend.tasks.scene import Pose
@@ -164,7 +171,13 @@ def test_who_clears_the_way_of_a_part_puts_that_aside() -> None:
 
 @pytest.mark.parametrize("act", Act)
 def test_every_act_has_words(act: Act) -> None:
-    without = {Act.BLOCK: "robot", Act.RELEASE: "robot", Act.COVER: "camera", Act.UNCOVER: "camera"}
+    without = {
+        Act.BLOCK: "robot",
+        Act.RELEASE: "robot",
+        Act.COVER: "camera",
+        Act.UNCOVER: "camera",
+        Act.CHARGE: "robot",
+    }
     object_name = None if act in without else "pink_bar"
     to = Pose(x=0.5, y=0.0) if act is Act.MOVE else None
     intervention = Intervention(act=act, object=object_name, to=to)
@@ -187,10 +200,12 @@ def test_every_promise_is_looked_for_seen_or_not(help_: Help) -> None:
             ev.HelpNotSeen(**DIALOGUE, help=help_),
         )
     )
-    assert looks.startswith("robot looks for ")
+    felt = help_ in (Help.PUT_IN, Help.TAKE_OUT, Help.CHARGE)
+    assert looks.startswith("robot waits to feel " if felt else "robot looks for ")
     assert looks.endswith(" until 40.0 s")
-    assert sees.startswith("robot sees ")
-    assert misses == sees.replace("sees", "does not see")
+    verb = "feel" if felt else "see"
+    assert sees.startswith(f"robot {verb}s ")
+    assert misses == sees.replace(f"{verb}s", f"does not {verb}")
 
 
 @pytest.mark.parametrize("resolution", Resolution)
@@ -294,3 +309,12 @@ def test_a_recorded_run_reads_in_order_from_beginning_to_end() -> None:
     assert lines[0].tone is Tone.RUN
     assert lines[-1].tone is Tone.FINISHED
     assert {line.speaker for line in lines if line.tone is Tone.SAID} == {"robot"}
+
+
+def test_a_leaf_without_an_object_is_told_as_left_out_and_its_item_once() -> None:
+    collected = ev.MissingPart(
+        node="/0", name="collect", object="mail", place="F1-101", left_out_by="anna", nowhere=True
+    )
+    handed_over = collected.model_copy(update={"node": "/1", "name": "hand_over"})
+    assert told_missing(collected) == "collect was left out, as anna said"
+    assert finished_text([collected, handed_over]) == "the task is done without mail, as anna said"

@@ -48,6 +48,10 @@ class Blocked(ArmMonitor[BlockedParameters]):
     phases: ClassVar[frozenset[Phase]] = frozenset(Phase) - {
         Phase.TRAVEL,
         Phase.RIDE,
+        Phase.LOAD,
+        Phase.UNLOAD,
+        Phase.TELL,
+        Phase.CHARGE,
         Phase.CONFIRM,
     }
     reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE

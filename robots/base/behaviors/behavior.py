@@ -2,13 +2,15 @@
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from mend.documents.strict_model import StrictModel
+from mend.robots.base.basket import Basket, NoBasket
 from mend.robots.base.body import BasePose
 from mend.robots.base.ways import Ride, Ways
 from mend.robots.execution.behavior import Behavior
+from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.phase import Phase
 
 
@@ -43,7 +45,43 @@ class RideUntilThere:
     ride: Ride
 
 
-BaseStep: TypeAlias = Drive | GetIn | RideUntilThere
+@dataclass(frozen=True, slots=True)
+class AwaitItem:
+    """One step: ask for an item at a place, until the basket is heavier."""
+
+    name: str
+    item: str
+    place: str
+
+
+@dataclass(frozen=True, slots=True)
+class AwaitTaken:
+    """One step: offer an item at a place, until the basket is lighter by what that weighs."""
+
+    name: str
+    item: str
+    place: str
+
+
+@dataclass(frozen=True, slots=True)
+class Tell:
+    """One step: tell people a message, until somebody says that it was heard."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Charging:
+    """One step: stand at a charger until the battery is full."""
+
+    name: str
+
+
+StandingStep: TypeAlias = AwaitItem | AwaitTaken | Tell | Charging
+"""What is done where the drive before has led."""
+BaseStep: TypeAlias = Drive | GetIn | RideUntilThere | StandingStep
+UNHEARD = "nobody_answers"
+"""The issue that is settled by nothing but somebody's word that a message was heard."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,13 +89,14 @@ class BaseSituation:
     """What a behavior may know when it lays out its steps.
 
     `here` is where the base is; `places` are the poses of all that the task's scene names so, and
-    `target` is that of the behavior's `place`, None where it has none.
+    `target` is that of the behavior's `place`, None where it has none. `basket`: its own.
     """
 
     here: BasePose
     places: Mapping[str, BasePose]
     target: BasePose | None
     ways: Ways
+    basket: Basket = field(default_factory=NoBasket)
 
 
 class BaseBehavior(Behavior):
@@ -75,3 +114,12 @@ def steps_of_ride(ride: Ride) -> list[BaseStep]:
     if ride.wait_at is not None:
         steps += [Drive(f"go to {name}", ride.wait_at), GetIn(f"get into {name}", ride)]
     return [*steps, RideUntilThere(f"ride to {ride.to_floor}", ride)]
+
+
+def steps_to(place: str, situation: BaseSituation) -> list[BaseStep]:
+    """Ride to the floor of a place and drive to it. Raises `CommandError` where there is none."""
+    if situation.target is None:
+        raise CommandError(f"it is not known where '{place}' is")
+    rides = situation.ways.rides(situation.here, situation.target)
+    steps = [step for ride in rides for step in steps_of_ride(ride)]
+    return [*steps, Drive(f"go to {place}", situation.target)]

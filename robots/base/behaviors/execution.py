@@ -3,8 +3,21 @@
 from collections.abc import Callable, Sequence
 
 from mend.robots.base.base import Base
-from mend.robots.base.behaviors.behavior import BaseStep, Drive, GetIn, RideUntilThere
+from mend.robots.base.battery import ENOUGH, LOW
+from mend.robots.base.behaviors.behavior import (
+    UNHEARD,
+    AwaitItem,
+    AwaitTaken,
+    BaseStep,
+    Charging,
+    Drive,
+    GetIn,
+    RideUntilThere,
+    StandingStep,
+    Tell,
+)
 from mend.robots.base.behaviors.driving import NEAR_M, Driving
+from mend.robots.base.behaviors.handling import Handling
 from mend.robots.base.behaviors.progress import BaseProgress
 from mend.robots.base.behaviors.riding import Riding
 from mend.robots.base.behaviors.watch import BaseWatch
@@ -13,7 +26,8 @@ from mend.robots.execution.execution import Execution
 from mend.robots.execution.execution_state import ExecutionState
 from mend.robots.execution.monitor import BEFORE_FIRST_STEP, AnyMonitor
 from mend.robots.execution.routine import Routine
-from mend.robots.link.messages import ReportBody, Resumed, StepStarted
+from mend.robots.execution.watch import Interruption
+from mend.robots.link.messages import FeltLoad, ReportBody, Resume, Resumed, StepStarted
 
 
 class BaseExecution(Execution[BaseProgress]):
@@ -35,7 +49,9 @@ class BaseExecution(Execution[BaseProgress]):
         self._watch = BaseWatch(id, behavior, progress, base, monitors, report)
         self._driving = Driving(base, progress, self._watch)
         self._riding = Riding(base, self._driving, progress, self._watch)
+        self._handling = Handling(base, progress, self._watch)
         self._done = 0
+        self._asked_whether_heard = False
 
     def way_is_clear(self) -> bool:
         """Whether the step under way, or else the next, could be taken, as far as is seen."""
@@ -53,10 +69,26 @@ class BaseExecution(Execution[BaseProgress]):
             return False
         return True
 
+    def felt(self) -> FeltLoad | None:
+        """What the basket feels that is not what the step under way, or else the next, needs."""
+        left, load = self._progress.steps[self._done :], self._base.load
+        match left[0] if left else None:
+            case AwaitItem():
+                return load.given()
+            case AwaitTaken(item=item):
+                return load.taken(self._base.basket.memory.items.get(item, 0.0))
+            case _:
+                return load.as_remembered()
+
+    def resume(self, told: Resume) -> Routine[None]:
+        """Go on; who asked whether a message was heard is told so by that alone."""
+        self._progress.heard = self._asked_whether_heard
+        return super().resume(told)
+
     @property
     def fraction(self) -> float:
         following = self._base.following
-        if self._progress.wait is not None:
+        if self._progress.wait is not None or self._progress.standing is not None:
             return 0.0
         if following is None or following.length_m <= NEAR_M:
             return 1.0
@@ -64,19 +96,20 @@ class BaseExecution(Execution[BaseProgress]):
 
     def end(self) -> None:
         self._base.elevators.withdraw()
+        self._base.basket.withdraw()
         super().end()
 
     def _walk(self, *, resumed: bool) -> Routine[bool]:
         progress = self._progress
-        progress.step, progress.blocked_since_s, progress.wait = BEFORE_FIRST_STEP, None, None
+        progress.step, progress.blocked_since_s = BEFORE_FIRST_STEP, None
+        progress.wait = progress.standing = None
+        self._forget_other_offers()
         self._watch.check()
         yield from self._find_out()
+        yield from self._fill_up()
         if self._done == 0 and self._is_there():
             return True
-        last = progress.steps[-1] if progress.steps else None
-        done = self._done == len(progress.steps)
-        if done and isinstance(last, Drive) and not self._driving.is_at(last.to):
-            # It was elsewhere than it had thought.
+        if self._is_elsewhere():
             self._done -= 1
         progress.move_to(ExecutionState.RUNNING)
         for number in range(self._done + 1, len(progress.steps) + 1):
@@ -91,9 +124,35 @@ class BaseExecution(Execution[BaseProgress]):
         yield from self._find_out()
         return False
 
+    def _is_elsewhere(self) -> bool:
+        """Whether it is not where its last drive led, and is to be: it had thought so."""
+        steps = self._progress.steps
+        before = steps[self._done - 1] if self._done else None
+        stays = self._done == len(steps) or isinstance(steps[self._done], StandingStep)
+        return stays and isinstance(before, Drive) and not self._driving.is_at(before.to)
+
+    def _forget_other_offers(self) -> None:
+        """What was offered where it stood is offered no more by who sets about something else."""
+        memory = self._base.basket.memory
+        if memory.offered is not None and memory.offered not in self._hands_over():
+            memory.offered = None
+
+    def _hands_over(self) -> list[tuple[str, str]]:
+        steps = (each for each in self._progress.steps if isinstance(each, AwaitTaken))
+        return [(each.item, each.place) for each in steps]
+
     def _find_out(self) -> Routine[None]:
         """Stand while it does not know where it is: it cannot say that it is there."""
         while self._base.whereabouts.is_lost:
+            self._watch.check_if_due()
+            yield
+
+    def _fill_up(self) -> Routine[None]:
+        """Stand while it is charged because its battery was low."""
+        battery = self._base.battery
+        if battery.share >= LOW:
+            return
+        while battery.charging and battery.share < ENOUGH:
             self._watch.check_if_due()
             yield
 
@@ -114,10 +173,23 @@ class BaseExecution(Execution[BaseProgress]):
                 yield from self._riding.get_in(step)
             case RideUntilThere():
                 yield from self._riding.ride(step)
+            case AwaitItem():
+                yield from self._handling.receive(step)
+            case AwaitTaken():
+                yield from self._handling.hand_over(step)
+            case Tell():
+                yield from self._handling.tell(step)
+            case Charging():
+                yield from self._handling.charge(step)
+
+    def _react(self, interruption: Interruption) -> Routine[None]:
+        self._asked_whether_heard = str(interruption) == UNHEARD
+        yield from super()._react(interruption)
 
     def _go_to_rest(self) -> Routine[None]:
         """A base rests where it stands, but in no cabin."""
         self._base.elevators.withdraw()
+        self._base.basket.withdraw()
         yield from self._base.settle()
         yield from self._riding.get_out(rides=isinstance(self._progress.taken, RideUntilThere))
         yield from self._base.settle()

@@ -8,10 +8,8 @@ from mend.robots.base.behaviors.behavior import (
     BaseBehavior,
     BaseSituation,
     BaseStep,
-    Drive,
-    steps_of_ride,
+    steps_to,
 )
-from mend.robots.execution.command_error import CommandError
 from mend.tasks.scene import Name
 
 
@@ -32,8 +30,4 @@ class GoTo(BaseBehavior):
 
     def steps(self, parameters: StrictModel, situation: BaseSituation) -> Sequence[BaseStep]:
         assert isinstance(parameters, GoToParameters), "commands are checked before"
-        if situation.target is None:
-            raise CommandError("go_to needs a place to go to")
-        rides = situation.ways.rides(situation.here, situation.target)
-        steps = [step for ride in rides for step in steps_of_ride(ride)]
-        return [*steps, Drive(f"go to {parameters.place}", situation.target)]
+        return steps_to(parameters.place, situation)

@@ -3,7 +3,15 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mend.robots.base.behaviors.behavior import BaseStep, Drive
+from mend.robots.base.behaviors.behavior import (
+    AwaitItem,
+    AwaitTaken,
+    BaseStep,
+    Charging,
+    Drive,
+    StandingStep,
+    Tell,
+)
 from mend.robots.base.ways import Ride
 from mend.robots.execution.execution_state import ExecutionState
 from mend.robots.execution.monitor import BEFORE_FIRST_STEP
@@ -24,13 +32,22 @@ class Wait:
     was_shut: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class StandingWait:
+    """Standing at a place for what people are to do, since `since_s` of the world's clock."""
+
+    step: StandingStep
+    since_s: float
+
+
 @dataclass(slots=True, kw_only=True)
 class BaseProgress(Progress):
     """What walks the steps and what watches them both go by.
 
     `blocked_since_s`: since when it has stood before something; None while it drives. `stalled_s`:
     how long it has come no nearer, although it may move. `no_way`: why it knows no way. `wait`: for
-    what elevator it waits.
+    what elevator it waits, and `standing` for what people. `heard`: somebody has said that the
+    message was heard.
     """
 
     steps: Sequence[BaseStep] = ()
@@ -38,6 +55,8 @@ class BaseProgress(Progress):
     stalled_s: float = 0.0
     no_way: str | None = None
     wait: Wait | None = None
+    standing: StandingWait | None = None
+    heard: bool = False
 
     @property
     def taken(self) -> BaseStep | None:
@@ -53,4 +72,16 @@ class BaseProgress(Progress):
             return Phase.PREPARE
         if self.wait is not None:
             return Phase.RIDE
-        return self.taken.phase if isinstance(self.taken, Drive) else Phase.TRAVEL
+        match self.taken:
+            case Drive(phase=phase):
+                return phase
+            case AwaitItem():
+                return Phase.LOAD
+            case AwaitTaken():
+                return Phase.UNLOAD
+            case Tell():
+                return Phase.TELL
+            case Charging():
+                return Phase.CHARGE
+            case _:
+                return Phase.TRAVEL

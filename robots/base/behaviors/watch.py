@@ -4,9 +4,9 @@ import math
 from collections.abc import Callable, Sequence
 
 from mend.robots.base.base import Base
-from mend.robots.base.behaviors.behavior import Drive
+from mend.robots.base.behaviors.behavior import AwaitItem, AwaitTaken, Charging, Drive, Tell
 from mend.robots.base.behaviors.progress import BaseProgress
-from mend.robots.base.monitors.monitor import AwaitedElevator, BaseView
+from mend.robots.base.monitors.monitor import AwaitedElevator, BaseView, Power, StandingFor
 from mend.robots.execution.monitor import AnyMonitor
 from mend.robots.execution.watch import Watch
 from mend.robots.link.messages import ReportBody
@@ -59,8 +59,41 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
                 lost_s=whereabouts.lost_s,
                 guesses=whereabouts.guesses,
                 scan=self._base.body.scan(),
+                standing=self._standing(now),
+                lacks=self._lacks(),
+                missing_kg=self._missing_kg(),
+                power=self._power(),
             )
         )
+
+    def _standing(self, now_s: float) -> StandingFor | None:
+        standing = self._progress.standing
+        if standing is None:
+            return None
+        match standing.step:
+            case AwaitItem(item=item, place=place) | AwaitTaken(item=item, place=place):
+                return StandingFor(item, place, now_s - standing.since_s)
+            case Tell() | Charging():
+                return StandingFor(None, None, now_s - standing.since_s)
+
+    def _power(self) -> Power:
+        battery = self._base.battery
+        to_charger = any(isinstance(each, Charging) for each in self._progress.steps)
+        return Power(battery.share, battery.charging, to_charger)
+
+    def _lacks(self) -> str | None:
+        """What it is to hand over and was never given."""
+        items = self._base.basket.memory.items
+        given = {e.item for e in self._progress.steps if isinstance(e, AwaitItem)} | items.keys()
+        wanted = (e.item for e in self._progress.steps if isinstance(e, AwaitTaken))
+        return next((each for each in wanted if each not in given), None)
+
+    def _missing_kg(self) -> float:
+        """How much less its basket holds than it was given; what it offers may be taken."""
+        memory = self._base.basket.memory
+        if not memory.items or memory.offered is not None:
+            return 0.0
+        return max(0.0, -self._base.load.change_kg())
 
     def _elevator(self, now_s: float) -> AwaitedElevator | None:
         wait, base = self._progress.wait, self._base

@@ -22,7 +22,17 @@ class Lost(BaseMonitor[LostPatience]):
 
     issue: ClassVar[str] = "lost"
     behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
-    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE, Phase.TRAVEL, Phase.CONFIRM})
+    phases: ClassVar[frozenset[Phase]] = frozenset(
+        {
+            Phase.PREPARE,
+            Phase.TRAVEL,
+            Phase.LOAD,
+            Phase.UNLOAD,
+            Phase.TELL,
+            Phase.CHARGE,
+            Phase.CONFIRM,
+        }
+    )
     reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
     parameters: ClassVar[type[StrictModel]] = LostPatience
 

@@ -28,6 +28,30 @@ class AwaitedElevator:
     waited_s: float
 
 
+@dataclass(frozen=True, slots=True)
+class StandingFor:
+    """Who stands at a place for people for `waited_s` so far: to put in or take out an item.
+
+    Without one it has told a message, or is charged.
+    """
+
+    item: str | None
+    place: str | None
+    waited_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Power:
+    """What the gauge of a battery tells: the `share` that it holds, and whether current comes in.
+
+    `to_charger`: the base is on its way there, or at one.
+    """
+
+    share: float = 1.0
+    charging: bool = False
+    to_charger: bool = False
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BaseView(MonitorView):
     """What a base senses at one moment.
@@ -38,7 +62,8 @@ class BaseView(MonitorView):
     before it. `stalled_s`: how long it has come no nearer, although nothing bars its way. `no_way`:
     why it knows no way to the goal. `elevator`: what it waits for, if that is one. `lost_s`: how
     long it has not known where it is; `guesses` says where it may be then, likeliest first (`at
-    F1-101`).
+    F1-101`). `standing`: what it waits for people to do. `lacks`: what it is to hand over and was
+    not given; `missing_kg`: how much less there is in its basket than it was given.
     """
 
     pose: BasePose
@@ -52,6 +77,10 @@ class BaseView(MonitorView):
     scan: RangeScan
     lost_s: float = 0.0
     guesses: Callable[[], Sequence[str]] = tuple
+    standing: StandingFor | None = None
+    lacks: str | None = None
+    missing_kg: float = 0.0
+    power: Power = Power()
 
 
 class BaseMonitor(Monitor[P, BaseView]):

@@ -13,6 +13,12 @@ const SENTENCES: Readonly<Record<string, (part: string) => string>> = {
   blind: () => "The robot's head camera does not see the table.",
   lost: () => "The robot does not know where it is.",
   blocked: () => "Something is in the way of the robot's arm.",
+  item_not_given: () => "The robot waits for something to be put into its basket.",
+  item_not_taken: () => "The robot waits for something to be taken out of its basket.",
+  item_taken: () => "Something was taken out of the robot's basket on its way.",
+  item_missing: () => "The robot is to hand over something that it was not given.",
+  low_battery: () => "The robot has little left in its battery.",
+  nobody_answers: () => "The robot has told a message, and nobody has said that it was heard.",
 };
 
 /** Of robots that drive, who see with their lasers. */

@@ -14,6 +14,9 @@ const PROMISES: Readonly<Record<Help, (part: string) => string>> = {
   clear_way: () => "would clear the way",
   clear_view: () => "would clear the view of the head camera",
   tell_place: () => "know where it is",
+  put_in: () => "would put something into its basket",
+  take_out: () => "would take something out of its basket",
+  charge: () => "would plug it in",
 };
 
 const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
@@ -23,6 +26,9 @@ const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
   clear_way: () => "The robot watches until nothing is in the way of its arm.",
   clear_view: () => "The robot watches until its head camera sees the table.",
   tell_place: () => "The robot looks whether what its laser sees agrees with that.",
+  put_in: () => "The robot waits until it feels that in its basket.",
+  take_out: () => "The robot waits until it feels that its basket is lighter.",
+  charge: () => "The robot waits until it feels current.",
 };
 
 /** A base sees with its laser, and has no arm. */

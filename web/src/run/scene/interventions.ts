@@ -72,6 +72,9 @@ const DONE: Readonly<Record<Intervention["act"], (object: string) => string>> = 
   release: () => "The robot’s way is free.",
   cover: () => "The head camera is covered.",
   uncover: () => "The head camera’s view is clear.",
+  put_in: () => "Something is put into the robot’s basket.",
+  take_out: () => "Something is taken out of the robot’s basket.",
+  charge: () => "The robot is plugged in.",
 };
 
 /** One sentence on what was done. */

@@ -1,0 +1,53 @@
+"""`deliver_message`: drive to a place, tell people something, and have that confirmed."""
+
+from collections.abc import Sequence
+from typing import Annotated, ClassVar
+
+from pydantic import AfterValidator, Field
+
+from mend.documents.strict_model import StrictModel
+from mend.robots.base.behaviors.behavior import (
+    BaseBehavior,
+    BaseSituation,
+    BaseStep,
+    Tell,
+    steps_to,
+)
+from mend.robots.link.shown_name import can_be_shown
+from mend.tasks.scene import Name
+
+MOST_CHARACTERS = 300
+_QUOTES = frozenset('“”„‟«»"')
+
+
+def _require_sayable(message: str) -> str:
+    """What is shown between quotation marks has none of its own, or it would seem to end there."""
+    if not can_be_shown(message) or not _QUOTES.isdisjoint(message):
+        raise ValueError(
+            "a message has only characters that can be seen, no double quotation marks, and no "
+            "blank at its ends"
+        )
+    return message
+
+
+Message = Annotated[
+    str, Field(min_length=1, max_length=MOST_CHARACTERS), AfterValidator(_require_sayable)
+]
+
+
+class MessageParameters(StrictModel):
+    """`place`: where people are; `message`: what they are told, word for word."""
+
+    place: Name
+    message: Message
+
+
+class DeliverMessage(BaseBehavior):
+    """Goes to a place as `go_to` does, and tells a message there until it is confirmed."""
+
+    name: ClassVar[str] = "deliver_message"
+    parameters: ClassVar[type[StrictModel]] = MessageParameters
+
+    def steps(self, parameters: StrictModel, situation: BaseSituation) -> Sequence[BaseStep]:
+        assert isinstance(parameters, MessageParameters), "commands are checked before"
+        return [*steps_to(parameters.place, situation), Tell("tell the message")]

@@ -1,0 +1,50 @@
+"""Standing at a place: things that people put in and take out, and messages that they confirm."""
+
+from collections.abc import Callable
+
+from mend.robots.base.base import Base
+from mend.robots.base.battery import FULL
+from mend.robots.base.behaviors.behavior import AwaitItem, AwaitTaken, StandingStep
+from mend.robots.base.behaviors.progress import BaseProgress, StandingWait
+from mend.robots.base.behaviors.watch import BaseWatch
+from mend.robots.execution.routine import Routine
+
+
+class Handling:
+    """Takes the steps of a base that are done standing, and lets the monitors watch."""
+
+    def __init__(self, base: Base, progress: BaseProgress, watch: BaseWatch) -> None:
+        self._base, self._progress, self._watch = base, progress, watch
+
+    def receive(self, step: AwaitItem) -> Routine[None]:
+        """Wait until something is put into the basket. Raises `Interruption`."""
+        base = self._base
+        base.basket.ask_for(step.item, step.place)
+        yield from self._await(step, until=lambda: base.load.given() is None)
+        base.basket.withdraw()
+        base.basket.memory.note_given(step.item, base.basket.load_kg())
+
+    def hand_over(self, step: AwaitTaken) -> Routine[None]:
+        """Wait until the item is taken out of the basket. Raises `Interruption`."""
+        base, memory = self._base, self._base.basket.memory
+        memory.offered = (step.item, step.place)
+        base.basket.offer(step.item, step.place)
+        weight_kg = memory.items[step.item]
+        yield from self._await(step, until=lambda: base.load.taken(weight_kg) is None)
+        base.basket.withdraw()
+        memory.note_taken(step.item, step.place, base.basket.load_kg())
+
+    def tell(self, step: StandingStep) -> Routine[None]:
+        """Wait until somebody says that the message was heard. Raises `Interruption`."""
+        yield from self._await(step, until=lambda: self._progress.heard)
+
+    def charge(self, step: StandingStep) -> Routine[None]:
+        """Stand until the battery is full. Raises `Interruption`."""
+        yield from self._await(step, until=lambda: self._base.battery.share >= FULL)
+
+    def _await(self, step: StandingStep, until: Callable[[], bool]) -> Routine[None]:
+        self._progress.standing = StandingWait(step, self._base.body.time_s())
+        while not until():
+            self._watch.check_if_due()
+            yield
+        self._progress.standing = None
