@@ -27,8 +27,9 @@ SEEN = Offer(
 
 FELT = Offer(
     question="I felt something hold up my arm and stopped. Can you clear its way?",
-    failed="I have now been stopped {times} on my way{with_object}.",
-    yes_effect="You clear the way of my arm; I go on as soon as I see nothing in it ({attempt}).",
+    failed="I have now been held up {times}{with_object}.",
+    yes_effect="You clear the way of my arm. I give you time for that, then I look, and go on if I "
+    "see nothing in it ({attempt}).",
     help=Help.CLEAR_WAY,
     request="Please clear the way of my arm. I look whether it is free.",
     resolution=Resolution.ROBOT_FINISH,

@@ -25,6 +25,7 @@ from mend.dialogue.script import (
     ToldState,
     Turn,
 )
+from mend.dialogue.spoken import spoken
 from mend.dialogue.wording import sentence, word
 from mend.tasks.issue import Issue
 from mend.tasks.resolution import Resolution
@@ -74,6 +75,7 @@ _CALLS = Transitions(
 _ROBOT_GOES_ON = (Resolution.ROBOT_FINISH, Resolution.COLLAB_FINISH)
 """Once it sees the help, or to take it, the robot moves."""
 
+_OR_FAILS = "; if I do not see it then, {attempt} has failed, and {later}."
 _SEEN_NOW = {
     Expectation.AT_PLACE: "I see the {object} at its place now.",
     Expectation.IN_REACH: "I see the {object} within my reach now.",
@@ -117,9 +119,14 @@ class Conversation:
         return self._phase
 
     @property
+    def puts_right(self) -> tuple[Expectation, ...]:
+        """What would put the issue right, the most telling first."""
+        return tuple(self._script.put_right)
+
+    @property
     def watched_for(self) -> tuple[Expectation, ...]:
-        """What would put the issue right now, the most telling first; empty unless asking."""
-        return tuple(self._script.put_right) if self._phase is ConversationPhase.ASKING else ()
+        """What puts the issue right without an answer; empty unless asking."""
+        return self.puts_right if self._phase is ConversationPhase.ASKING else ()
 
     @property
     def denied(self) -> frozenset[Expectation]:
@@ -166,12 +173,20 @@ class Conversation:
         said = self._word(said)
         return self._settle(CloseReason.RESOLVED, state.resolution, said, change)
 
-    def help_not_seen(self, felt: Felt | None = None) -> list[Turn]:
+    def help_not_seen(self, felt: Felt | None = None, *, blind: str = "") -> list[Turn]:
         """The promised help was not seen in time: ask about it again, or give up.
 
-        `felt`: what a basket feels instead, where it is one that was to feel the help.
+        `felt`: what a basket feels instead, where it is one that was to feel the help. `blind`: why
+        nothing could be seen, so that nobody can say whether there was any. That is no failed
+        attempt the first time: before the next one the robot asks for its view.
         """
         _CALLS.require(self._phase, DialogueCall.HELP_NOT_SEEN)
+        if blind:
+            said = f"{sentence(spoken(blind))} I cannot see whether anybody has helped."
+            if self._outlook.times > 1:
+                return self._give_up(said)
+            close = self._close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY)
+            return [Remark(f"{said} I look again before I go on."), close]
         if isinstance(self._at, ToldState):
             doubted = Remark(self._word(self._at.doubted))
             return [doubted, *self._enter(self._at.otherwise, heard=False)]
@@ -180,10 +195,11 @@ class Conversation:
             return self._give_up(self._word(state.given_up))
         self._reasks_left -= 1
         self._phase = ConversationPhase.ASKING
+        keeps = "I keep watching for it ({attempt})"
         return [
             Ask(
                 text=self._word(state.not_seen if felt is None else _felt(state, felt)),
-                yes_effect=self._word("I keep watching for it ({attempt})."),
+                yes_effect=self._word(f"{keeps}." if self._reasks_left else keeps + _OR_FAILS),
                 no_effect=self._effect(state.otherwise, state.otherwise_effect),
                 timeout_effect=self._word(ATTEMPT_FAILED),
                 yes_final=self._is_final(state),

@@ -5,7 +5,7 @@ from typing import Literal
 from uuid import UUID, uuid4
 
 from mend.dialogue.outlook import Outlook
-from mend.dialogue.script import Ask, Felt, Turn
+from mend.dialogue.script import Ask, Felt, Help, Turn
 from mend.errors import ConflictError, NotFoundError
 from mend.server.dialogues.answers import AnswerSource
 from mend.server.dialogues.escalation import (
@@ -23,12 +23,19 @@ from mend.server.runtime.clock import has_come
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.dialogue_events import DialogueEvents
 from mend.server.runtime.dialogue_looks import DialogueLooks, seen_at
-from mend.server.runtime.dialogue_state import MOST_EXTENSIONS, DialogueState, rehearse
+from mend.server.runtime.dialogue_state import (
+    MOST_EXTENSIONS,
+    DialogueState,
+    call_of,
+    rehearse,
+)
 from mend.server.runtime.outlooks import is_suspect, outlook_at, outlook_now
 from mend.server.runtime.promises import Promises
 from mend.server.runtime.robot_proxy import Purpose, RobotProxy
 from mend.tasks.scenario import Person
 
+_SEEN_BY_HEAD = (Help.PLACE, Help.PUT_BACK, Help.CLEAR_WAY)
+"""Help of which a robot whose head camera shows nothing cannot say that there was none."""
 SendMail = Callable[[ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None]
 """Writes to the operators: about a question that nobody answered, or a suspected false alarm."""
 
@@ -370,8 +377,9 @@ class DialogueDriver:
             await self._converse(dialogue, f"seen:{change}", [verified], proxy, dialogue.helper)
         elif has_come(self._context.clock, awaiting.until):
             felt = None if proxy.felt is None else Felt(proxy.felt)
-            call = "not_seen" if felt is None else f"not_seen:{felt}"
-            await self._converse(dialogue, call, [make.help_not_seen(awaiting, felt)], proxy)
+            blind = proxy.blind if awaiting.help in _SEEN_BY_HEAD else None
+            unseen = make.help_not_seen(awaiting, felt, blind)
+            await self._converse(dialogue, call_of(unseen), [unseen], proxy)
 
     @property
     def _rate(self) -> float | None:

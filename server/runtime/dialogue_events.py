@@ -126,8 +126,10 @@ class DialogueEvents:
     def help_verified(self, awaiting: ev.HelpAwaited, change: Change) -> ev.HelpVerified:
         return ev.HelpVerified(**self._fields(), help=awaiting.help, change=change)
 
-    def help_not_seen(self, awaiting: ev.HelpAwaited, felt: Felt | None) -> ev.HelpNotSeen:
-        return ev.HelpNotSeen(**self._fields(), help=awaiting.help, felt=felt)
+    def help_not_seen(
+        self, awaiting: ev.HelpAwaited, felt: Felt | None, blind: str | None
+    ) -> ev.HelpNotSeen:
+        return ev.HelpNotSeen(**self._fields(), help=awaiting.help, felt=felt, blind=blind)
 
     def aborted(self) -> ev.DialogueClosed:
         return ev.DialogueClosed(**self._fields(), reason=CloseReason.ABORTED)

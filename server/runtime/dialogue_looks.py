@@ -130,7 +130,7 @@ class DialogueLooks:
         """Whether every look so far was dark, so that nothing can be compared with them yet."""
         first = dialogue.first_look
         dark = first is not None and first.blind and dialogue.looked_anew is None
-        return dark and Expectation.VIEW_CLEAR not in dialogue.conversation.watched_for
+        return dark and Expectation.VIEW_CLEAR not in dialogue.conversation.puts_right
 
     def _looks_first(self, dialogue: DialogueState, proxy: RobotProxy, until: float) -> bool:
         """Make the look that later ones are compared with, unless there was one that saw anything.
@@ -198,7 +198,7 @@ class DialogueLooks:
 
     def _expected(self, dialogue: DialogueState) -> Expectation | None:
         """What a look is asked to wait for; where an object is, every look tells."""
-        watched = dialogue.conversation.watched_for
+        watched = dialogue.conversation.puts_right
         named = dialogue.raised.object is not None
         if Expectation.IN_REACH in watched and named:
             return Expectation.IN_REACH

@@ -15,6 +15,7 @@ from mend.robots.link.messages import BASKET, LASER, Detection
 from mend.server.journal import events as ev
 from mend.tasks.issue import Issue, Sensed
 
+_BLIND = "blind:"
 MOST_EXTENSIONS = 10
 """So often the deadline of one question may be moved."""
 
@@ -163,7 +164,7 @@ class DialogueState:
     @_apply.register
     def _(self, event: ev.HelpNotSeen) -> None:
         self.awaiting = None
-        self.advance("not_seen" if event.felt is None else f"not_seen:{event.felt}")
+        self.advance(call_of(event))
 
     @_apply.register
     def _(self, event: ev.Resolved) -> None:
@@ -176,12 +177,21 @@ class DialogueState:
         self.claim = None
 
 
+def call_of(event: ev.HelpNotSeen) -> str:
+    """The call that tells a conversation of help that was not seen."""
+    if event.blind is not None:
+        return _BLIND + event.blind
+    return "not_seen" if event.felt is None else f"not_seen:{event.felt}"
+
+
 def converse(conversation: Conversation, call: str) -> list[Turn]:
     """Make a call by its name: `open`, `yes`, `no`, `not_seen`, `silence`, `abort`.
 
-    Three may have arguments: `seen:moved` (a change), `put_right:at_place:moved` (what is seen,
-    too) and, where a basket felt something else, `not_seen:lighter`.
+    Some have arguments: `seen:moved` (a change), `put_right:at_place:moved` (what is seen, too),
+    `not_seen:lighter` (what a basket felt) and `blind:the picture is black` (why nothing was seen).
     """
+    if call.startswith(_BLIND):
+        return conversation.help_not_seen(blind=call.removeprefix(_BLIND))
     verb, *arguments = call.split(":")
     match verb, arguments:
         case "yes" | "no", []:

@@ -60,8 +60,9 @@ def is_suspect(state: RunState, raised: ev.IssueRaised) -> bool:
     before = _dialogue_about(state, state.issues[leaf][-1])
     felt = raised.detection is not None and raised.detection.felt
     looked = None if before is None else before.first_look
-    judged = state.scripts[raised.issue].may_be_mistaken
-    return felt or (judged and looked is not None and bool(looked.fulfilled))
+    # Who answers before the robot has looked once leaves it with what it saw before it tried again.
+    right = raised.last_seen is not None if looked is None else bool(looked.fulfilled)
+    return felt or (state.scripts[raised.issue].may_be_mistaken and right)
 
 
 # --- The same issue again ----------------------------------------------------------------------

@@ -36,7 +36,7 @@ from mend.robots.link.messages import (
     StepStarted,
 )
 from mend.server.journal.journal import Receipt
-from mend.server.runtime.dialogue_looks import FIRST_LOOK_S
+from mend.server.runtime.dialogue_looks import FIRST_LOOK_S, HELP_TAKES_S, WATCH_PERIOD_S
 from mend.tasks.intervention import Act
 
 FIRST_JPEG, SECOND_JPEG = b"\xff\xd8\xff first \xff\xd9", b"\xff\xd8\xff second \xff\xd9"
@@ -196,7 +196,7 @@ class PretendRobots:
                     await self._work(robot, body)
             case Look():
                 await self._look(robot, command, body)
-            case Hold() if robot.patient:
+            case Hold(until=until) if robot.patient and not _for_help(until - robot.time):
                 return
             case Hold(until=until):
                 robot.time = max(robot.time, until)
@@ -337,3 +337,8 @@ class PretendRobots:
                 blind="the camera is covered" if robot.blind else None,
             ),
         )
+
+
+def _for_help(holds_s: float) -> bool:
+    """Whether time is to pass for help that was promised, and not while a question is open."""
+    return WATCH_PERIOD_S < holds_s <= HELP_TAKES_S

@@ -20,7 +20,8 @@ def about_cup(*, blind: bool = False) -> Any:
     first = SimpleNamespace(fulfilled=["in_reach"], position=(*HERE, 0.7), blind=False)
     if blind:
         first = SimpleNamespace(fulfilled=[], position=None, blind=True)
-    watched = SimpleNamespace(watched_for=(Expectation.IN_REACH,))
+    right = (Expectation.IN_REACH,)
+    watched = SimpleNamespace(watched_for=right, puts_right=right)
     return SimpleNamespace(
         id=UUID(int=1), raised=raised, first_look=first, looked_anew=None, conversation=watched
     )

@@ -120,6 +120,28 @@ async def test_a_helper_has_time_before_a_look_that_could_not_tell_help_from_non
     assert verified.time - awaited.time >= 10.0
 
 
+async def test_who_answers_before_the_first_look_has_as_much_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", 0.0)
+    _, events = await run_with("missed", 4, ["yes"] * 50, wrong=True)
+    looked, awaited = of_type(events, ev.FirstLook)[0], of_type(events, ev.HelpAwaited)[0]
+    assert events.index(awaited) < events.index(looked)
+    assert looked.fulfilled == ["in_reach"]
+    assert of_type(events, ev.HelpVerified)[0].time - awaited.time >= 10.0
+    assert not any(each.helped for each in of_type(events, ev.Resolved))
+
+
+async def test_operators_hear_of_a_robot_that_is_wrong_also_where_no_is_said_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", 0.0)
+    _, events = await run_with("missed", 4, ["no"] * 50, wrong=True)
+    assert of_type(events, ev.FirstLook) == []
+    [alarm] = of_type(events, ev.SuspectedFalseAlarm)
+    assert (alarm.object, alarm.issue, alarm.times) == ("part_1", "missed", 2)
+
+
 async def test_other_leaves_go_first_after_a_failure_of_the_robots_own() -> None:
     _, events = await run_with("missed", 4, "none", times=1, goal="and", wrong=True)
     started = [each.name for each in of_type(events, ev.NodeStarted)]

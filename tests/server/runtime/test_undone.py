@@ -147,7 +147,10 @@ async def test_what_the_last_look_cannot_see_is_told_as_that() -> None:
     assert isinstance(events[-1], ev.RunFinished)
     assert [(each.node, each.place) for each in events[-1].unseen] == [("/0", "spot_1")]
     assert view.result is not None
-    assert view.result.reason == "the task is done; the last look did not show part_1 there"
+    assert (
+        view.result.reason
+        == "the task is done; the last look could not tell whether part_1 stayed there"
+    )
 
 
 async def test_a_run_does_not_end_with_a_table_that_is_not_seen() -> None:

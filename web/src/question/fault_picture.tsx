@@ -40,7 +40,12 @@ export function FaultPicture({ question }: { question: Question }) {
       {clip.length > 0 && <ClipControls question={question} frame={frame} onFrame={setFrame} />}
       <figcaption class="small quiet">
         {spoken(camera)} camera
-        {detection !== null && detection.explanation !== "" && <>: {spoken(detection.explanation)}.</>}
+        {detection !== null && detection.explanation !== "" && (
+          <>
+            {detection.felt ? ". Felt: " : ": "}
+            {spoken(detection.explanation)}.
+          </>
+        )}
       </figcaption>
     </figure>
   );
