@@ -1,6 +1,8 @@
 """In which order the leaves of a tree are done, and which of them exclude each other."""
 
 from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
+from functools import cached_property
 
 from mend.tasks.definition import BehaviorNode, GoalNode
 
@@ -35,6 +37,40 @@ class LeafOrder:
         return not any(
             parent is not None and self._nodes[parent].kind == "or" for parent in parents
         )
+
+    def others_do(self, first: int, second: int, leaves: AbstractSet[int]) -> bool:
+        """Whether each alternative to the first leaf has one of `leaves` done for the second one.
+
+        An alternative is what an OR above the first leaf, and not above the second, may have done
+        in its stead.
+        """
+        way = self._fork(first, second)[1]
+        return all(
+            self._has_done(child, leaves)
+            for node in way[:-1]
+            if (parent := self._nodes[node].parent) is not None and self._nodes[parent].kind == "or"
+            for child in self._children[parent]
+            if child != node
+        )
+
+    def _has_done(self, node: int, leaves: AbstractSet[int]) -> bool:
+        """Whether one of some leaves is done whenever a node is."""
+        under = (self._has_done(child, leaves) for child in self._children[node])
+        match self._nodes[node].kind:
+            case "behavior":
+                return node in leaves
+            case "or":
+                return all(under)
+            case _:
+                return any(under)
+
+    @cached_property
+    def _children(self) -> list[list[int]]:
+        children: list[list[int]] = [[] for _ in self._nodes]
+        for index, node in enumerate(self._nodes):
+            if node.parent is not None:
+                children[node.parent].append(index)
+        return children
 
     def _fork(self, first: int, second: int) -> tuple[str, list[int], list[int]]:
         """The kind of the lowest node over both, and the ways up to below it from each."""

@@ -84,7 +84,8 @@ def _poses_of(name: str, entry: LinedMapping, problems: list[Problem]) -> list[t
     if given[0] == "grid":
         return _grid_poses(name, value, line, problems)
     if not isinstance(value, LinedSequence) or not value:
-        message = f"'poses' of '{name}' must be a list of poses, but it is {show_kind(value)}"
+        kind = "empty" if isinstance(value, LinedSequence) else show_kind(value)
+        message = f"'poses' of '{name}' must be a list of poses, but it is {kind}"
         problems.append(Problem(line, None, message))
         return []
     return list(zip(value, value.item_lines, strict=True))

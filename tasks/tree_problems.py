@@ -104,6 +104,12 @@ class _Standing:
     def carries(self, other: "_Standing") -> bool:
         return abs(self.top_m - other.bottom_m) < RESTS_M and self.ground.overlaps(other.ground)
 
+    def takes_over(self, other: "_Standing", upper: "_Standing") -> bool:
+        """Whether it carries what another one carries, where that has been."""
+        return (
+            self.part != upper.part and self.carries(upper) and self.ground.overlaps(other.ground)
+        )
+
     def fills(self, other: "_Standing") -> bool:
         """Whether both are in one space."""
         return min(self.top_m, other.top_m) - max(
@@ -114,16 +120,7 @@ class _Standing:
 def _wrongly_stacked(nodes: Nodes, scene: Scene) -> Iterator[TreeProblem]:
     starts, places = _starts(nodes, scene), _places(nodes, scene)
     order = LeafOrder(nodes)
-    for lower, upper in _stacked(places):
-        if not order.exclusive(lower.leaf, upper.leaf) and not order.is_before(
-            lower.leaf, upper.leaf, surely=False
-        ):
-            yield TreeProblem(
-                upper.leaf,
-                "place",
-                f"'{upper.part}' is to stand on '{lower.part}', which is not sure to be placed "
-                f"before it: put '{lower.part}' before '{upper.part}' in a THEN",
-            )
+    yield from _without_support(starts, places, order)
     for lower, upper in _stacked(starts):
         if not order.exclusive(lower.leaf, upper.leaf) and not order.is_before(
             upper.leaf, lower.leaf
@@ -144,6 +141,46 @@ def _wrongly_stacked(nodes: Nodes, scene: Scene) -> Iterator[TreeProblem]:
                     "place",
                     f"'{place.part}' is to go where '{start.part}' starts: put '{start.part}' "
                     f"before it in a THEN, or choose another place",
+                )
+
+
+def _without_support(
+    starts: Sequence[_Standing], places: Sequence[_Standing], order: LeafOrder
+) -> Iterator[TreeProblem]:
+    """Parts that may be placed, or come to stand, on nothing."""
+    stacked = list(_stacked(places))
+    for lower, upper in stacked:
+        if order.exclusive(lower.leaf, upper.leaf):
+            continue
+        carriers = {each.leaf for each, other in stacked if other.leaf == upper.leaf}
+        if not order.is_before(lower.leaf, upper.leaf, surely=False):
+            yield TreeProblem(
+                upper.leaf,
+                "place",
+                f"'{upper.part}' is to stand on '{lower.part}', which is not sure to be placed "
+                f"before it: put '{lower.part}' before '{upper.part}' in a THEN",
+            )
+        elif not order.others_do(lower.leaf, upper.leaf, carriers):
+            yield TreeProblem(
+                upper.leaf,
+                "place",
+                f"'{upper.part}' is to stand on '{lower.part}', and an OR may have something else "
+                f"done than placing that: let each of its alternatives place what '{upper.part}' "
+                f"can stand on, or put '{lower.part}' outside of the OR",
+            )
+    for lower in starts:
+        for upper in places:
+            if (
+                lower.part != upper.part
+                and lower.carries(upper)
+                and not order.exclusive(lower.leaf, upper.leaf)
+                and not any(each.takes_over(lower, upper) for each in places)
+            ):
+                yield TreeProblem(
+                    upper.leaf,
+                    "place",
+                    f"'{upper.part}' is to stand on '{lower.part}' where that starts, but "
+                    f"'{lower.part}' is to be brought elsewhere: choose another place",
                 )
 
 

@@ -40,7 +40,12 @@ APART = scene(
     {"a": (-0.6, 0), "b": (-0.4, 0), "c": (-0.2, 0)}, {"a": (0, 0), "b": (0.2, 0), "c": (0.4, 0)}
 )
 TOWER = scene(
-    {"a": (-0.6, 0), "b": (-0.4, 0), "c": (-0.2, 0)}, {"a": (0, 0), "b": (0, 0.05), "c": (0, 0.10)}
+    {"a": (-0.6, 0), "b": (-0.4, 0), "c": (-0.2, 0)},
+    {"a": (0, 0), "b": (0, 0.05), "c": (0, 0.10), "d": (0.3, 0)},
+)
+FOUNDATION = scene(
+    {"a": (-0.6, 0), "b": (-0.4, 0), "c": (-0.2, 0)},
+    {"a": (0, 0), "b": (-0.6, 0.05), "c": (0.4, 0), "under": (-0.6, 0)},
 )
 PILE = scene(
     {"a": (-0.6, 0), "b": (-0.6, 0.05), "c": (-0.2, 0)}, {"a": (0, 0), "b": (0.2, 0), "c": (0.4, 0)}
@@ -61,6 +66,8 @@ def told(tree: dict[str, Any], of: Scene = APART) -> list[str]:
 
 
 A, B, C = leaf("a"), leaf("b"), leaf("c")
+OR_ELSE = "and an OR may have something else done than placing that"
+STARTS = "'b' is to stand on 'a' where that starts, but 'a' is to be brought elsewhere"
 LATER = "is not sure to be placed before it"
 
 
@@ -81,6 +88,15 @@ LATER = "is not sure to be placed before it"
         ({"and": [A, B]}, EXCHANGE, "'a' is to go where 'b' starts"),
         ({"then": [{"or": [B, C]}, A]}, EXCHANGE, "'a' is to go where 'b' starts"),
         ({"or": [A, B]}, EXCHANGE, "'a' is to go where 'b' starts"),
+        ({"then": [{"or": [A, leaf("c", "d")]}, B]}, TOWER, f"'b' is to stand on 'a', {OR_ELSE}"),
+        (
+            {"then": [{"or": [{"and": [A]}, {"then": [leaf("c", "d")]}]}, B]},
+            TOWER,
+            f"'b' is to stand on 'a', {OR_ELSE}",
+        ),
+        ({"then": [A, B]}, FOUNDATION, STARTS),
+        ({"then": [B, A]}, FOUNDATION, STARTS),
+        ({"then": [{"or": [A, C]}, B]}, FOUNDATION, STARTS),
     ],
 )
 def test_a_tree_that_cannot_be_done_is_told_so(tree, of, message) -> None:
@@ -98,6 +114,10 @@ def test_a_tree_that_cannot_be_done_is_told_so(tree, of, message) -> None:
         ({"then": [A, B, C]}, TOWER),
         ({"then": [{"and": [A]}, {"then": [B, C]}]}, TOWER),
         ({"or": [A, B]}, TOWER),
+        ({"then": [{"or": [A, leaf("c", "a")]}, B]}, TOWER),
+        ({"then": [{"or": [A, {"and": [leaf("c", "a")]}]}, B]}, TOWER),
+        ({"or": [A, B]}, FOUNDATION),
+        ({"then": [A, leaf("c", "under"), B]}, FOUNDATION),
         ({"then": [B, A]}, PILE),
         ({"then": [B, {"and": [A, C]}]}, PILE),
         ({"then": [B, A]}, EXCHANGE),

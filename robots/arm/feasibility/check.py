@@ -92,7 +92,7 @@ class _SceneCheck:
         """The plain mistakes first; what follows from one is not told as well."""
         found = [*self._handling()]
         found += [*self._standing(_ToldProblems(found)), *self._overlaps(), *self._merging()]
-        return [*found, *_each_once(self._doing(_ToldProblems(found)))]
+        return _each_once([*found, *self._doing(_ToldProblems(found))])
 
     def _handling(self) -> list[SceneProblem]:
         names = dict.fromkeys(job.name for job in self._jobs)

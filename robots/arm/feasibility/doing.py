@@ -32,6 +32,8 @@ _SIDES = (-1.0, 1.0)
 _STEP_M, _STEPS = 0.002, 100
 _MM_M = 0.001
 _SCATTER_STEP_M = 0.0005
+_SCATTER_SHARES = 8
+"""More scatter may be possible where less is not: what is told is the first that is not, so far."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +103,12 @@ class ArmCheck:
 
     def _too_strewn(self, hindrance: Hindrance) -> SceneProblem:
         """What is possible but for the scatter; told once for a scene."""
-        fits_m, fails_m = 0.0, self.scatter.xy
+        most_m = self.scatter.xy
+        steps = [share / _SCATTER_SHARES for share in range(1, _SCATTER_SHARES + 1)]
+        fails_m = next(
+            s * most_m for s in steps if not self._strewn(s * most_m).possible(hindrance)
+        )
+        fits_m = fails_m - most_m / _SCATTER_SHARES
         while fails_m - fits_m > _SCATTER_STEP_M:
             half_m = (fits_m + fails_m) / 2
             if self._strewn(half_m).possible(hindrance):
@@ -112,7 +119,8 @@ class ArmCheck:
         return SceneProblem(
             ("scatter", "xy"),
             f"a scatter of {1e3 * self.scatter.xy:g} mm may put {name} where the arm cannot take "
-            f"it: with {1e3 * math.floor(fits_m / _MM_M) * _MM_M:.0f} mm at most it can, around "
+            f"it: make it smaller ({name} could be taken with "
+            f"{1e3 * math.floor(fits_m / _MM_M) * _MM_M:.0f} mm), or move {name}, which is at "
             f"({start.x:.3f}, {start.y:.3f})",
         )
 
@@ -145,7 +153,7 @@ class ArmCheck:
             ((self._lacking_m(each), each) for each in crowded), key=lambda pair: pair[0]
         )
         name, neighbour = hindrance.start.name, _spoken_of(least.by, hindrance.around)
-        apart = f"put them {1e3 * lacking_m:.0f} mm further apart"
+        apart = f"put them at least {1e3 * lacking_m:.0f} mm further apart"
         if least.at_place and hindrance.place is not None:
             return SceneProblem(
                 hindrance.place.where,
@@ -154,7 +162,7 @@ class ArmCheck:
             )
         return SceneProblem(
             hindrance.start.where,
-            f"{neighbour} is too close to {name} for the fingers to grasp that: {apart}",
+            f"{neighbour} is too close to {name} for the fingers to grasp {name}: {apart}",
         )
 
     def _lacking_m(self, crowding: Crowding) -> float:

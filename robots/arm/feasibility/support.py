@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import product
 
 import shapely
 
@@ -10,6 +12,8 @@ from mend.robots.arm.feasibility.standing import Standing, beneath
 from mend.tasks.scene import RESTS_M, Scene, Table
 from mend.tasks.scene_problem import SceneProblem
 
+OVER_EDGE_M = 0.01
+"""So far a part may reach over the table's edge where the scatter has put it there."""
 LEAST_STABILITY_RAD = math.radians(8.0)
 """What tips over when it leans by less does so when it is grasped, put down or touched."""
 
@@ -30,12 +34,64 @@ def cannot_stand(
                 standing.where,
                 f"{name} at {_at(standing)} reaches over the edge of {_extents(table)}",
             )
+        elif not _stays_on_table(standing, scene):
+            yield SceneProblem(
+                ("scatter", "xy"),
+                f"a scatter of {1e3 * scene.scatter.xy:g} mm may put {name}, at {_at(standing)}, "
+                f"over the edge of {_extents(table)}: make it smaller, or move {name} inwards",
+            )
         else:
             yield from _tips_over(standing, others, (), scene)
     elif not carriers:
         yield SceneProblem(standing.where, _in_the_air(standing, others, table))
+    elif not _stays_on_others(standing, others, scene):
+        below = " and ".join(each.name for each in carriers)
+        yield SceneProblem(
+            ("scatter", "xy"),
+            f"a scatter of {1e3 * scene.scatter.xy:g} mm may put {name} off {below}, on which it "
+            "starts, as each part is scattered by itself: make it smaller, or let it start on the "
+            "table",
+        )
     else:
         yield from _tips_over(standing, others, carriers, scene)
+
+
+def _stays_on_others(standing: Standing, others: Sequence[Standing], scene: Scene) -> bool:
+    """Whether a part that starts on others stands there wherever the scatter may put them."""
+    apart_m = 2.0 * scene.scatter.xy
+    if standing.where[0] != "objects" or apart_m == 0.0:
+        return True
+    weights = {name: each.mass_kg for name, each in scene.objects.items()}
+    for dx, dy in product((-apart_m, apart_m), repeat=2):
+        pose = standing.pose.model_copy(
+            update={"x": standing.pose.x + dx, "y": standing.pose.y + dy}
+        )
+        shifted = replace(standing, pose=pose)
+        carriers = beneath(shifted, others)
+        if not carriers or stability_rad(shifted, carriers, others, weights) <= 0.0:
+            return False
+    return True
+
+
+def _stays_on_table(standing: Standing, scene: Scene) -> bool:
+    """Whether a part that starts on the table stands there wherever the scatter may put it.
+
+    A little of it may then reach over the edge.
+    """
+    scatter, over_m = scene.scatter, min(OVER_EDGE_M, min(standing.part.size[:2]) / 4)
+    if standing.where[0] != "objects" or (scatter.xy == 0.0 and scatter.yaw == 0.0):
+        return True
+    reach_m = scatter.xy - over_m
+    outline, turns = _outline(scene.table).buffer(1e-6), (-scatter.yaw, 0.0, scatter.yaw)
+    return all(
+        outline.contains(shapely.box(x0 - reach_m, y0 - reach_m, x1 + reach_m, y1 + reach_m))
+        for x0, y0, x1, y1 in (
+            shapely.affinity.rotate(
+                standing.ground, turn, origin=(standing.pose.x, standing.pose.y), use_radians=True
+            ).bounds
+            for turn in turns
+        )
+    )
 
 
 def _tips_over(

@@ -212,9 +212,33 @@ def test_scatter_needs_its_room_too() -> None:
     (found,) = problems_of(scattered, leaf("one", "target", None))
     assert found.where == ("scatter", "xy")
     assert found.message == (
-        "a scatter of 20 mm may put one where the arm cannot take it: with 5 mm at most it can, "
-        "around (0.500, -0.400)"
+        "a scatter of 20 mm may put one where the arm cannot take it: make it smaller (one could "
+        "be taken with 5 mm), or move one, which is at (0.500, -0.400)"
     )
+
+
+def test_no_scatter_puts_a_part_over_the_edge() -> None:
+    near = scene({"one": box(0.40, -0.2, (0.04, 0.04, 0.05))}, target=FREE)
+    inside = near.model_copy(update={"scatter": Scatter(xy=0.04)})
+    beyond = near.model_copy(update={"scatter": Scatter(xy=0.041)})
+    turned = near.model_copy(update={"scatter": Scatter(xy=0.04, yaw=0.3)})
+    assert problems_of(inside, leaf("one", "target", None)) == []
+    for strewn in (beyond, turned):
+        found = problems_of(strewn, leaf("one", "target", None))[0]
+        assert found.where == ("scatter", "xy")
+        assert "may put one, at (0.400, -0.200), over the edge of the table" in found.message
+
+
+def test_no_scatter_puts_a_part_off_the_one_on_which_it_starts() -> None:
+    slab = (0.05, 0.05, 0.04)
+    pile = {"low": box(0.6, -0.2, slab), "high": box(0.6, -0.2, slab, z=0.74)}
+    made = scene(pile, low=FREE, high=Pose(x=0.5, y=-0.05))
+    leaves = [goal("then"), leaf("high", "high"), leaf("low", "low")]
+    little = made.model_copy(update={"scatter": Scatter(xy=0.003)})
+    assert problems_of(made, *leaves) == problems_of(little, *leaves) == []
+    found = problems_of(made.model_copy(update={"scatter": Scatter(xy=0.02)}), *leaves)[0]
+    assert found.where == ("scatter", "xy")
+    assert "may put high off low, on which it starts" in found.message
 
 
 def test_too_large_a_scatter_is_told_once_and_not_as_out_of_reach() -> None:
@@ -225,7 +249,7 @@ def test_too_large_a_scatter_is_told_once_and_not_as_out_of_reach() -> None:
     assert problems_of(made, leaves[0]) == []
     (found,) = problems_of(scattered, *leaves)
     assert found.where == ("scatter", "xy")
-    assert "a scatter of 400 mm may put part_0 where the arm cannot take it" in found.message
+    assert "a scatter of 400 mm may put part_0, at (0.500, -0.500), over the edge" in found.message
 
 
 @given(
