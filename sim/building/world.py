@@ -61,10 +61,11 @@ class WorldSnapshot(StrictModel):
     cabins: dict[str, CabinSnapshot]
     odometers: list[OdometerSnapshot]
     beliefs: list[BeliefSnapshot | None]
-    items: dict[str, ItemSnapshot]
-    wishes: dict[int, WishSnapshot]
-    baskets: list[BasketSnapshot]
-    batteries: list[BatterySnapshot]
+    # Older ones have none of these.
+    items: dict[str, ItemSnapshot] = {}
+    wishes: dict[int, WishSnapshot] = {}
+    baskets: list[BasketSnapshot] = []
+    batteries: list[BatterySnapshot] = []
     furniture: dict[str, list[Row]]
     furniture_moves_s: float
     carries_s: float | None
@@ -392,10 +393,12 @@ class BuildingWorld:
             raise ValueError("the snapshot has other doors than the building")
         self.elevators.restore(kept.cabins)
         self.goods.restore(kept.items, kept.wishes)
-        for basket, was in zip(self.baskets, kept.baskets, strict=True):
-            basket.restore(was)
-        for battery, held in zip(self.batteries, kept.batteries, strict=True):
-            battery.restore(held)
+        if kept.baskets:
+            for basket, was in zip(self.baskets, kept.baskets, strict=True):
+                basket.restore(was)
+        if kept.batteries:
+            for battery, held in zip(self.batteries, kept.batteries, strict=True):
+                battery.restore(held)
         self._furniture.restore(kept.furniture)
         self._furniture_moves_s = kept.furniture_moves_s
         self._carrying.due_s = kept.carries_s

@@ -18,7 +18,7 @@ from mend.sim.building.scene import scene_of
 from mend.tasks.scenario import Person
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "buildings"
-PATIENCE_S = 240.0
+PATIENCE_S = 500.0
 KEEPS_WORD = Person(acts=True)
 LIES = Person(acts=True, never=1.0)
 

@@ -17,7 +17,7 @@ from mend.sim.building.scene import scene_of
 from mend.tasks.scenario import Person
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "buildings"
-PATIENCE_S = 120.0
+PATIENCE_S = 500.0
 
 
 def rounds(*rooms: int) -> str:

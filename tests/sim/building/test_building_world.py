@@ -156,3 +156,13 @@ def test_a_shut_door_is_still_shut_for_who_stands_beside_the_lane() -> None:
         bench.send("robot1", Look(expect="way_clear", within_s=1.0))
         bench.run()
         assert bench.of(Looked)[-1].fulfilled is False
+
+
+def test_a_snapshot_of_before_there_were_baskets_is_gone_on_from() -> None:
+    bench = BuildingBench()
+    kept = bench.world.snapshot()
+    for later in ("items", "wishes", "baskets", "batteries"):
+        del kept[later]
+    again = BuildingBench().world
+    again.restore(kept)
+    assert again.snapshot()["robots"] == kept["robots"]
