@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
 from typing import Literal
 from uuid import UUID
 
@@ -9,11 +10,13 @@ from console_in_browser import OpenPage
 from playwright.async_api import Page, expect
 from two_boxes import BENCH, BOTH
 
+from mend.fleet.requests import DeliverMessage, GoToRoom, Transport
 from mend.maps.building.building import Building
 from mend.maps.building.random_building import random_building
 from mend.server.composition import Service
+from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.runtime.requests import RunRequest
-from mend.server.sites.requests import SiteRequest
+from mend.server.sites.requests import FleetOptions, SiteRequest
 from mend.sim.building.scene import scene_of
 from mend.tasks.intervention import Intervention
 from mend.tasks.scenario import Person
@@ -232,6 +235,42 @@ async def unknown(_: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def open_office_with_fleet(service: Service, speed: float | Literal["max"] = 1.0) -> UUID:
+    """A site of one floor whose robot takes requests, with somebody who always helps."""
+    scene = scene_of(Building(random_building(7, 1, 6)), "office", 1)
+    await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
+    site = await service.sites.open_site(
+        SiteRequest(
+            scene="office",
+            world="building",
+            speed=speed,
+            seed=3,
+            world_options={"localizer": "exact", "unmapped": 0.0, "shut_doors": 0.0},
+            fleet=FleetOptions(answers="yes"),
+        )
+    )
+    return site.id
+
+
+async def requests(service: Service, open_page: OpenPage) -> Page:
+    """One is under way, one waits for its time, and one was refused."""
+    site = await open_office_with_fleet(service)
+    wanted = [
+        Transport(name="parcel", what="the blue parcel", origin="F1/101", destination="F1/106"),
+        DeliverMessage(name="lunch", place="F1/103", message="Lunch.", earliest_s=600.0),
+    ]
+    for each in wanted:
+        await service.fleets.submit(site, each, None)
+    with suppress(RequestRefusedError):
+        soon = GoToRoom(name="soon", place="F1/106", latest_s=1.0)
+        await service.fleets.submit(site, soon, None)
+    page = await open_page("/requests")
+    under_way = page.get_by_role("list", name="Open requests").get_by_text("Under way")
+    await expect(under_way).to_be_visible(timeout=PATIENCE_MS)
+    await expect(page.get_by_text("Refused")).to_be_visible()
+    return page
+
+
 async def sign_in(_: Service, open_page: OpenPage) -> Page:
     page = await open_page("/")
     await page.context.clear_cookies()
@@ -261,6 +300,7 @@ SITUATIONS: dict[str, Situation] = {
         wrong_tree,
         delete_tree,
         start_run,
+        requests,
         settings,
         unknown,
         sign_in,

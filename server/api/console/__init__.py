@@ -51,6 +51,7 @@ Accepted = Annotated[str, Header(alias="accept-encoding")]
 @router.get("/edit/{tree}")
 @router.get("/start")
 @router.get("/start/{tree}")
+@router.get("/requests")
 @router.get("/settings")
 async def view(accept_encoding: Accepted = "") -> Response:
     """The page; which view it shows is its own business."""

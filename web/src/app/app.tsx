@@ -1,7 +1,9 @@
 // The frame of every view: who is signed in decides what is shown, the address which view.
+import { useEffect } from "preact/hooks";
 import { Announcer } from "../question/announcer";
 import { AskBar } from "../question/ask_bar";
 import { QuestionsView } from "../question/questions_view";
+import { followFleets } from "../requests/fleets";
 import { SignIn } from "../sign_in/sign_in";
 import { session } from "../state/service";
 import { ConnectionBar } from "./connection_bar";
@@ -15,9 +17,11 @@ const RunsView = later(() => import("../run/runs_view").then((module) => module.
 const TreesView = later(() => import("../trees/trees_view").then((module) => module.TreesView));
 const TreeEditor = later(() => import("../trees/tree_editor").then((module) => module.TreeEditor));
 const StartRun = later(() => import("../run/start/start_run").then((module) => module.StartRun));
+const RequestsView = later(() => import("../requests/requests_view").then((module) => module.RequestsView));
 const SettingsView = later(() => import("../settings/settings_view").then((module) => module.SettingsView));
 
 export function App() {
+  useEffect(() => (session.value === "in" ? followFleets() : undefined), [session.value]);
   if (session.value === "unknown") return <p class="app-waiting">Looking for the service …</p>;
   if (session.value !== "in") return <SignIn />;
   return (
@@ -55,6 +59,8 @@ function View() {
       return <TreeEditor key={shown.tree} tree={shown.tree} />;
     case "start":
       return <StartRun key={shown.tree} tree={shown.tree} />;
+    case "requests":
+      return <RequestsView />;
     case "settings":
       return <SettingsView />;
     case "unknown":

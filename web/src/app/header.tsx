@@ -1,5 +1,6 @@
 // The bar on top: where to go, whether the service is there, who one is.
 import type { ConnectionState } from "../wire/helper_socket";
+import { fleets } from "../requests/fleets";
 import { questions } from "../state/questions";
 import { helperName } from "../state/preferences";
 import { connection } from "../state/service";
@@ -32,6 +33,11 @@ export function Header() {
         <Place href="/trees" current={view === "trees" || view === "tree" || view === "edit"}>
           Task trees
         </Place>
+        {(view === "requests" || (fleets.value?.length ?? 0) > 0) && (
+          <Place href="/requests" current={view === "requests"}>
+            Requests
+          </Place>
+        )}
       </nav>
       <p class={`connection ${connection.value}`} role="status">
         {CONNECTION[connection.value]}

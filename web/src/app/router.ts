@@ -9,6 +9,7 @@ export type Route =
   | { view: "tree"; tree: string }
   | { view: "edit"; tree: string | null }
   | { view: "start"; tree: string | null }
+  | { view: "requests" }
   | { view: "settings" }
   | { view: "unknown"; path: string };
 
@@ -21,7 +22,7 @@ export function routeOf(address: string): Route {
   if (rest.length > 0) return { view: "unknown", path: address };
   if (second === undefined) {
     if (first === "") return { view: "questions" };
-    if (first === "runs" || first === "trees" || first === "settings") return { view: first };
+    if (first === "runs" || first === "trees" || first === "requests" || first === "settings") return { view: first };
     if (first === "edit" || first === "start") return { view: first, tree: null };
   } else if (first === "runs") return { view: "run", run: second };
   else if (first === "trees") return { view: "tree", tree: second };

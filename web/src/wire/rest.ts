@@ -2,10 +2,12 @@
 import type {
   Answered,
   DialogueView,
+  FleetView,
   Intervention,
   Layout,
   LeafSaid,
   Problem as ProblemDocument,
+  RequestView,
   RobotView,
   RunRequest,
   RunStarted,
@@ -30,6 +32,8 @@ export class Refusal extends Error {
     readonly detail: string,
     readonly errors: readonly string[] = [],
     readonly answeredBy: string | null = null,
+    /** From when until when a request could be met instead (the building's clock, seconds). */
+    readonly nextPossible: readonly number[] | null = null,
   ) {
     super(errors.length > 0 ? errors.join("\n") : detail);
   }
@@ -83,8 +87,8 @@ async function read(path: string): Promise<Response> {
 async function refusal(response: Response): Promise<Refusal> {
   const problem = (await response.json().catch(() => null)) as ProblemDocument | null;
   if (problem === null) return new Refusal(response.status, response.statusText);
-  const { detail, errors, answered_by } = problem;
-  return new Refusal(response.status, detail, errors ?? [], answered_by ?? null);
+  const { detail, errors, answered_by, next_possible_s } = problem;
+  return new Refusal(response.status, detail, errors ?? [], answered_by ?? null, next_possible_s ?? null);
 }
 
 const segment = encodeURIComponent;
@@ -156,6 +160,12 @@ export const promptSoundPath = (id: string, prompt: string) =>
 export const phraseSoundPath = (name: string) => `/api/speech/phrases/${segment(name)}`;
 
 export const robots = () => call<RobotView[]>("GET", "/api/robots");
+const atSite = (site: string, name = "") =>
+  `/api/requests${name === "" ? "" : `/${name.split("/").map(segment).join("/")}`}?site=${segment(site)}`;
+export const requests = (site: string) => call<RequestView[]>("GET", atSite(site));
+export const makeRequest = (site: string, request: object) => call<RequestView>("POST", atSite(site), request);
+export const cancelRequest = (site: string, name: string) => call<void>("DELETE", atSite(site, name));
+export const fleet = (site: string) => call<FleetView>("GET", `/api/sites/${segment(site)}/fleet`);
 export const sites = () => call<SiteView[]>("GET", "/api/sites");
 export const worlds = () => call<WorldView[]>("GET", "/api/worlds");
 export const scenarios = () => call<ScenarioSummary[]>("GET", "/api/scenarios");

@@ -1,0 +1,74 @@
+"""People ask robots of a building for something in the console, and follow it to its end."""
+
+import pytest
+from console_in_browser import OpenPage
+from console_situations import open_office_with_fleet
+from playwright.async_api import expect
+
+from mend.server.composition import Service
+
+# One event loop for all tests of the console, and so one browser.
+pytestmark = pytest.mark.asyncio(loop_scope="session")
+
+LONG_MS = 60_000
+
+
+async def test_something_is_asked_for_and_followed_until_it_is_done(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service, "max")
+    page = await open_page("/")
+    await page.get_by_role("link", name="Requests").click(timeout=LONG_MS)
+    await page.get_by_label("What is to be brought").fill("the mail", timeout=LONG_MS)
+    await page.get_by_label("From").select_option("F1/101")
+    await page.get_by_label("To", exact=True).select_option("F1/103")
+    await page.get_by_role("button", name="Ask for it").click()
+    over = page.get_by_role("list", name="Requests that are over")
+    row = over.get_by_role("listitem").filter(has_text="Bring the mail from F1/101 to F1/103")
+    await expect(row).to_contain_text("Done", timeout=LONG_MS)
+    await expect(page.get_by_label("What is to be brought")).to_have_value("")
+
+
+async def test_what_is_missing_is_said_and_nothing_is_asked_for(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service)
+    page = await open_page("/requests")
+    await page.get_by_role("button", name="Ask for it").click(timeout=LONG_MS)
+    await expect(page.get_by_text("Say what is to be brought.")).to_be_visible()
+    await expect(page.get_by_text("Nothing is asked for just now.")).to_be_visible()
+
+
+async def test_what_cannot_be_met_in_time_is_offered_for_when_it_can(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service)
+    page = await open_page("/requests")
+    await page.get_by_label("Tell something").check(timeout=LONG_MS)
+    await page.get_by_label("What is to be told").fill("Lunch is ready.")
+    await page.get_by_label("Where").select_option("F1/106")
+    await page.get_by_label("Within").fill("0.1")
+    await page.get_by_role("button", name="Ask for it", exact=True).click()
+    await expect(page.get_by_role("alert").filter(has_text="cannot be met")).to_be_visible()
+    await page.get_by_role("button", name="instead").click()
+    open_ones = page.get_by_role("list", name="Open requests")
+    await expect(open_ones).to_contain_text("Tell “Lunch is ready.” at F1/106", timeout=LONG_MS)
+
+
+async def test_what_is_no_longer_wanted_is_cancelled(service: Service, open_page: OpenPage) -> None:
+    await open_office_with_fleet(service)
+    page = await open_page("/requests")
+    await page.get_by_label("Have a robot come").check(timeout=LONG_MS)
+    await page.get_by_label("Where").select_option("F1/106")
+    await page.get_by_role("button", name="Ask for it").click()
+    await page.get_by_role("button", name="Cancel: Come to F1/106").click(timeout=LONG_MS)
+    over = page.get_by_role("list", name="Requests that are over")
+    await expect(over).to_contain_text("Cancelled", timeout=LONG_MS)
+
+
+async def test_without_robots_that_take_requests_the_page_says_so(open_page: OpenPage) -> None:
+    page = await open_page("/requests")
+    await expect(page.get_by_text("No robots take requests")).to_be_visible(timeout=LONG_MS)
+    await page.goto("/")
+    await expect(page.get_by_role("link", name="Task trees")).to_be_visible()
+    await expect(page.get_by_role("link", name="Requests")).to_be_hidden()

@@ -1,0 +1,129 @@
+// What people of a building have asked its robots for, and how far that is.
+import { signal } from "@preact/signals";
+import { useState } from "preact/hooks";
+import { siteName } from "../run/run_words";
+import { may, whyNot } from "../state/access";
+import * as rest from "../wire/rest";
+import type { RequestView, SiteView } from "../wire/types";
+import { fleets } from "./fleets";
+import { expectation, isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "./request_words";
+import { useRequests } from "./use_requests";
+import { WishForm } from "./wish_form";
+import "./requests.css";
+
+/** Whose robots are asked, where several sites take requests. */
+const chosen = signal("");
+
+export function RequestsView() {
+  const sites = fleets.value;
+  const site = sites?.find(({ id }) => id === chosen.value) ?? sites?.[0];
+  return (
+    <section class="page">
+      <div class="page-head">
+        <h1>Requests</h1>
+        {sites !== null && sites.length > 1 && site !== undefined && <SiteChoice sites={sites} site={site} />}
+      </div>
+      {sites === null && <p class="quiet">Loading …</p>}
+      {sites !== null && site === undefined && <NobodyTakesAny />}
+      {site !== undefined && <OfSite key={site.id} site={site} />}
+    </section>
+  );
+}
+
+function SiteChoice({ sites, site }: { sites: readonly SiteView[]; site: SiteView }) {
+  return (
+    <div class="field">
+      <label for="requests-site">Building</label>
+      <select id="requests-site" value={site.id} onChange={(event) => (chosen.value = event.currentTarget.value)}>
+        {sites.map((each) => (
+          <option key={each.id} value={each.id}>
+            {siteName(each)}
+          </option>
+        ))}
+      </select>
+    </div>
+  );
+}
+
+function NobodyTakesAny() {
+  return (
+    <div class="panel empty">
+      <h2>No robots take requests</h2>
+      <p class="quiet">
+        Robots of a building do, once it is opened as a site with a fleet: <code>mend site open SCENE --world building --fleet live</code>.
+      </p>
+    </div>
+  );
+}
+
+function OfSite({ site }: { site: SiteView }) {
+  const { requests, fleet, failure, again } = useRequests(site.id);
+  const open = requests?.filter((each) => !isOver(each)) ?? [];
+  const over = requests?.filter(isOver).reverse() ?? [];
+  return (
+    <>
+      <p class="mistake" role="alert">
+        {failure}
+      </p>
+      {fleet !== null && (may("helper") ? <WishForm fleet={fleet} asked={again} /> : <p class="quiet">{whyNot("Asking for something", "helper")}</p>)}
+      {requests === null && failure === "" && <p class="quiet">Loading …</p>}
+      {requests !== null && (
+        <>
+          <h2>Open</h2>
+          {open.length === 0 && <p class="quiet">Nothing is asked for just now.</p>}
+          <List label="Open requests" requests={open} now={fleet?.now_s} changed={again} />
+          {over.length > 0 && <h2>Over</h2>}
+          <List label="Requests that are over" requests={over} now={fleet?.now_s} changed={again} />
+        </>
+      )}
+    </>
+  );
+}
+
+interface ListProps {
+  label: string;
+  requests: readonly RequestView[];
+  now: number | undefined;
+  changed: () => void;
+}
+
+function List({ label, requests, now, changed }: ListProps) {
+  if (requests.length === 0) return null;
+  return (
+    <ul class="requests" aria-label={label}>
+      {requests.map((each) => (
+        <Row key={each.name} request={each} now={now} changed={changed} />
+      ))}
+    </ul>
+  );
+}
+
+function Row({ request, now, changed }: { request: RequestView; now: number | undefined; changed: () => void }) {
+  const [failure, setFailure] = useState("");
+  const cancel = () =>
+    rest.cancelRequest(request.site, request.name).then(changed, (error: Error) => setFailure(error.message));
+  const { status, reason } = request;
+  return (
+    <li class="request">
+      <span class={`badge request-${status}`}>
+        <span aria-hidden="true">{STATUS_SIGNS[status]}</span>
+        {STATUS_WORDS[status]}
+      </span>
+      <span class="request-wanted">
+        <strong>{wanted(request)}</strong>
+        <span class="small quiet">{expectation(request, now)}</span>
+        {reason !== null && <span class="small">{reason.charAt(0).toUpperCase() + reason.slice(1)}.</span>}
+        {failure !== "" && (
+          <span class="mistake small" role="alert">
+            {failure}
+          </span>
+        )}
+      </span>
+      {!isOver(request) && status !== "returning" && may("helper") && (
+        <button class="button" type="button" aria-label={`Cancel: ${wanted(request)}`} onClick={() => void cancel()}>
+          Cancel
+        </button>
+      )}
+    </li>
+  );
+}

@@ -1,0 +1,36 @@
+// The requests of one site, and its clock, read anew every few seconds.
+import { useEffect, useState } from "preact/hooks";
+import * as rest from "../wire/rest";
+import type { FleetView, RequestView } from "../wire/types";
+
+const AGAIN_MS = 2000;
+
+export interface Requests {
+  /** Null until they were read. */
+  requests: readonly RequestView[] | null;
+  fleet: FleetView | null;
+  failure: string;
+}
+
+const NOTHING: Requests = { requests: null, fleet: null, failure: "" };
+
+/** Also how to read them at once. */
+export function useRequests(site: string): Requests & { again: () => void } {
+  const [found, setFound] = useState<Requests>(NOTHING);
+  const [asked, setAsked] = useState(0);
+  useEffect(() => {
+    let current = true;
+    const read = () =>
+      Promise.all([rest.requests(site), rest.fleet(site)]).then(
+        ([requests, fleet]) => current && setFound({ requests, fleet, failure: "" }),
+        (error: Error) => current && setFound((before) => ({ ...before, failure: error.message })),
+      );
+    void read();
+    const timer = setInterval(() => void read(), AGAIN_MS);
+    return () => {
+      current = false;
+      clearInterval(timer);
+    };
+  }, [site, asked]);
+  return { ...found, again: () => setAsked((count) => count + 1) };
+}

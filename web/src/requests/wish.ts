@@ -1,0 +1,61 @@
+// What somebody fills in, and the request that it is.
+export type Kind = "transport" | "deliver_message" | "go_to_room";
+
+export interface Wish {
+  kind: Kind;
+  what: string;
+  message: string;
+  origin: string;
+  destination: string;
+  place: string;
+  /** Minutes from now, as typed; empty is any time. */
+  within: string;
+}
+
+export const NO_WISH: Wish = {
+  kind: "transport",
+  what: "",
+  message: "",
+  origin: "",
+  destination: "",
+  place: "",
+  within: "",
+};
+
+const LONGEST_NAME = 40;
+
+/** What is missing, in a sentence; empty where nothing is. */
+export function missing(wish: Wish): string {
+  const minutes = Number(wish.within);
+  if (wish.within !== "" && !(minutes > 0)) return "Say in how many minutes it has to be done, or leave that empty.";
+  switch (wish.kind) {
+    case "transport":
+      if (wish.what.trim() === "") return "Say what is to be brought.";
+      if (wish.origin === "" || wish.destination === "") return "Say from where, and to where.";
+      return wish.origin === wish.destination ? "It is there already: choose another place." : "";
+    case "deliver_message":
+      if (wish.message.trim() === "") return "Say what is to be told.";
+      return wish.place === "" ? "Say where." : "";
+    case "go_to_room":
+      return wish.place === "" ? "Say where." : "";
+  }
+}
+
+/** The request at `now` of the building's clock; `unlike` tells it from others of the same words. */
+export function requestOf(wish: Wish, now: number, unlike: string): Record<string, unknown> {
+  const latest = wish.within === "" ? {} : { latest_s: now + 60 * Number(wish.within) };
+  const name = `${wordsOf(wish)}-${unlike}`;
+  switch (wish.kind) {
+    case "transport":
+      return { kind: wish.kind, name, what: wish.what.trim(), origin: wish.origin, destination: wish.destination, ...latest };
+    case "deliver_message":
+      return { kind: wish.kind, name, message: wish.message.trim(), place: wish.place, ...latest };
+    case "go_to_room":
+      return { kind: wish.kind, name, place: wish.place, ...latest };
+  }
+}
+
+function wordsOf({ kind, what }: Wish): string {
+  const words = kind === "transport" ? what.replace(/[^A-Za-z0-9]+/g, "_").replace(/^[^A-Za-z]+|_+$/g, "") : "";
+  return words.slice(0, LONGEST_NAME) || { transport: "thing", deliver_message: "message", go_to_room: "visit" }[kind];
+}

@@ -1,0 +1,61 @@
+// What is said of requests, and what a filled-in form asks for.
+import { describe, expect, it } from "vitest";
+import { expectation, isOver, wanted, within } from "../src/requests/request_words";
+import { missing, NO_WISH, requestOf, type Wish } from "../src/requests/wish";
+import type { RequestStatus, RequestView } from "../src/wire/types";
+
+const MAIL: Wish = { ...NO_WISH, what: " the mail ", origin: "F1/101", destination: "F2/203" };
+
+function request(what: object, status: RequestStatus = "booked", done = 300): RequestView {
+  const expected = { robot: "robot1", place: "F1/101", begins_s: 0, done_s: done };
+  return { name: "r", site: "s", what: { ...what }, status, reason: null, expected } as RequestView;
+}
+
+describe("words of requests", () => {
+  it.each([
+    [{ kind: "transport", what: "mail", origin: "F1/101", destination: "F2/203" }, "Bring mail from F1/101 to F2/203"],
+    [{ kind: "deliver_message", message: "Lunch.", place: "F1/101" }, "Tell “Lunch.” at F1/101"],
+    [{ kind: "go_to_room", place: "F1/101" }, "Come to F1/101"],
+    [{ kind: "escort", person: "Ann", origin: "hall", destination: "F1/101" }, "Show Ann the way from hall to F1/101"],
+  ])("say what is wanted", (what, said) => {
+    expect(wanted(request(what))).toBe(said);
+  });
+
+  it("say when an open request is expected, and nothing of one that is over", () => {
+    const going = { kind: "go_to_room", place: "F1/101" };
+    expect(expectation(request(going), 60)).toBe("robot1, done in about 4 minutes");
+    expect(expectation(request(going, "under_way"), 290)).toBe("robot1, done in less than a minute");
+    expect(expectation(request(going, "done"), 60)).toBe("");
+    expect(isOver(request(going, "failed"))).toBe(true);
+    expect(within(60)).toBe("in about 1 minute");
+  });
+});
+
+describe("a filled-in form", () => {
+  it("says what is missing", () => {
+    expect(missing(NO_WISH)).toBe("Say what is to be brought.");
+    expect(missing({ ...NO_WISH, what: "mail" })).toBe("Say from where, and to where.");
+    expect(missing({ ...MAIL, destination: "F1/101" })).toBe("It is there already: choose another place.");
+    expect(missing({ ...MAIL, within: "soon" })).toContain("in how many minutes");
+    expect(missing({ ...NO_WISH, kind: "deliver_message", message: "x" })).toBe("Say where.");
+    expect(missing(MAIL)).toBe("");
+  });
+
+  it("is a request by the building's clock", () => {
+    expect(requestOf({ ...MAIL, within: "5" }, 100, "ab12")).toEqual({
+      kind: "transport",
+      name: "the_mail-ab12",
+      what: "the mail",
+      origin: "F1/101",
+      destination: "F2/203",
+      latest_s: 400,
+    });
+    expect(requestOf({ ...NO_WISH, kind: "go_to_room", place: "F1/101" }, 0, "ab12")).toEqual({
+      kind: "go_to_room",
+      name: "visit-ab12",
+      place: "F1/101",
+    });
+    expect(requestOf({ ...MAIL, what: "3 Schlüssel" }, 0, "x")["name"]).toBe("Schl_ssel-x");
+    expect(requestOf({ ...MAIL, what: "钥匙" }, 0, "x")["name"]).toBe("thing-x");
+  });
+});
