@@ -32,6 +32,7 @@ from mend.server.api import (
 from mend.server.api import models as models_api
 from mend.server.api import poses as poses_api
 from mend.server.api import principals as principals_api
+from mend.server.api import requests as requests_api
 from mend.server.api import sites as sites_api
 from mend.server.api import worlds as worlds_api
 from mend.server.api.absolute_form import AbsoluteForm
@@ -43,6 +44,7 @@ from mend.server.api.problems import Problem, answer_errors_with_problems
 from mend.server.api.repeats import Repeats
 from mend.server.api.services import ObservedJournal, Services, WorldList
 from mend.server.documents import DocumentLibrary
+from mend.server.fleets.fleets import Fleets
 from mend.server.models import RobotModels
 from mend.server.off_loop import OffLoop
 from mend.server.pace import Sleep
@@ -61,6 +63,7 @@ ROUTES = (
     documents,
     worlds_api,
     sites_api,
+    requests_api,
     runs,
     leaves,
     poses_api,
@@ -93,6 +96,7 @@ def create_app(
     scenarios: DocumentLibrary,
     worlds: WorldList,
     sites: Sites,
+    fleets: Fleets,
     models: RobotModels,
     poses: PoseSource,
     access: Access,
@@ -118,6 +122,7 @@ def create_app(
         scenarios,
         worlds,
         sites,
+        fleets,
         models,
         poses,
         settings,

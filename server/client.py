@@ -4,7 +4,7 @@ import asyncio
 import contextlib
 from collections.abc import AsyncIterator, Awaitable
 from types import TracebackType
-from typing import Any, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 from urllib.parse import quote
 from uuid import UUID
 
@@ -27,6 +27,8 @@ from mend.server.documents import (
     ScenarioSummary,
     SceneSummary,
 )
+from mend.server.fleets.operator_requests import WayFound
+from mend.server.fleets.views import FleetView, RequestView
 from mend.server.journal.events import (
     Answered,
     AnyEvent,
@@ -49,6 +51,9 @@ from mend.server.runtime.views import (
 from mend.server.sites.requests import SiteRequest
 from mend.server.sites.views import SiteView
 from mend.tasks.intervention import Intervention
+
+if TYPE_CHECKING:
+    from mend.fleet.dispatch.booking import AnyRequest
 
 T = TypeVar("T")
 
@@ -280,6 +285,54 @@ class MendClient:
         """Stop a site's world for good; no run may be using it."""
         await self._request("DELETE", f"/api/sites/{site}")
 
+    # --- requests -----------------------------------------------------------------------------
+
+    async def make_request(self, request: "AnyRequest", site: UUID | None = None) -> RequestView:
+        """Ask robots of a building for something; `site` says whose, where several take requests.
+
+        Refused with status 409 is what they cannot do in time.
+        """
+        path = _at_site("/api/requests", site)
+        return await self._post(path, RequestView, request.model_dump(mode="json"))
+
+    async def requests(self, site: UUID | None = None) -> list[RequestView]:
+        return await self._get(_at_site("/api/requests", site), list[RequestView])
+
+    async def request(self, name: str, site: UUID | None = None) -> RequestView:
+        return await self._get(_at_site(f"/api/requests/{name}", site), RequestView)
+
+    async def change_request(
+        self, name: str, request: "AnyRequest", site: UUID | None = None
+    ) -> RequestView:
+        """Ask for something else instead; refused, or once a robot has set out, all stays."""
+        path = _at_site(f"/api/requests/{name}", site)
+        sent = await self._request("PUT", path, json=request.model_dump(mode="json"))
+        return RequestView.model_validate_json(sent.content)
+
+    async def cancel_request(self, name: str, site: UUID | None = None) -> None:
+        """Want it no more; what is fetched goes back to where it came from."""
+        await self._request("DELETE", _at_site(f"/api/requests/{name}", site))
+
+    async def fleet(self, site: UUID) -> FleetView:
+        """What the robots of a site are still to do, and why."""
+        return await self._get(f"/api/sites/{site}/fleet", FleetView)
+
+    async def take_robot_out(self, site: UUID, robot: str, reason: str) -> None:
+        """Have a robot of a fleet do nothing more for now; others fetch what it has."""
+        path = f"/api/sites/{site}/fleet/robots/{quote(robot)}/out_of_service"
+        await self._request("POST", path, json={"reason": reason})
+
+    async def put_robot_back(self, site: UUID, robot: str) -> None:
+        """Have it work again, from where it stands."""
+        await self._request(
+            "POST", f"/api/sites/{site}/fleet/robots/{quote(robot)}/back_in_service"
+        )
+
+    async def tell_of_way(self, site: UUID, way: WayFound) -> None:
+        """Say that a way is blocked, a door closed, or open again."""
+        path = f"/api/sites/{site}/fleet/ways"
+        await self._request("POST", path, json=way.model_dump(mode="json"))
+
     # --- robots -------------------------------------------------------------------------------
 
     async def robots(self) -> list[RobotView]:
@@ -390,6 +443,10 @@ class MendClient:
         if response.is_error:
             raise RefusedError(_problem_in(response))
         return response
+
+
+def _at_site(path: str, site: UUID | None) -> str:
+    return path if site is None else f"{path}?site={site}"
 
 
 def _problem_in(response: httpx.Response) -> Problem:

@@ -20,6 +20,7 @@ from mend.server.believed_time import BelievedTime
 from mend.server.dialogues.escalation import EscalationPolicy
 from mend.server.dialogues.mail import Mailer
 from mend.server.fixed_documents import GivenFiles, fixed_documents
+from mend.server.fleets.fleets import Fleets
 from mend.server.journal.run_index import RunPage
 from mend.server.journal.sqlite import IN_MEMORY, SqliteJournal
 from mend.server.library import Library, build_library
@@ -68,6 +69,7 @@ class Service:
     registry: RobotRegistry
     library: Library
     sites: Sites
+    fleets: Fleets
     url: str
     public_url: str | None
     settings: Settings
@@ -185,6 +187,7 @@ async def _open(
         poses=poses,
         refusals=refusals,
     )
+    fleets = Fleets(sites, runtime, journal, utc_now=lambda: datetime.now(UTC))
     speech = _speech(settings)
     app = create_app(
         runtime,
@@ -195,6 +198,7 @@ async def _open(
         scenarios=library.scenarios,
         worlds=worlds,
         sites=sites,
+        fleets=fleets,
         models=models,
         poses=poses,
         access=access,
@@ -214,6 +218,7 @@ async def _open(
             # Before it listens: a run that is not read yet would be unknown to whoever asks.
             await sites.recover()
             await runtime.recover()
+            await fleets.recover()
             await deeds.recover(access.sessions)
         pruning = asyncio.create_task(
             prune_regularly(
@@ -225,7 +230,7 @@ async def _open(
         watching = asyncio.create_task(_watch_access(access, deeds, journal_changes=recover))
         serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
         await server.wait_until_started(serving)
-        yield Service(runtime, journal, registry, library, sites, url, public_url, settings)
+        yield Service(runtime, journal, registry, library, sites, fleets, url, public_url, settings)
     finally:
         # From the last to the first, each of them also where one before has failed.
         async with AsyncExitStack() as ending:
@@ -239,6 +244,7 @@ async def _open(
             ending.push_async_callback(_cancel, watching)
             ending.push_async_callback(sites.close)
             ending.push_async_callback(runtime.close)
+            ending.push_async_callback(fleets.close)
             ending.push_async_callback(_cancel, pruning)
             # Nobody's end waits for what takes long: who asked for it is told to come again.
             ending.callback(off_loop.close)

@@ -93,7 +93,7 @@ RESOLUTIONS: dict[Resolution, str] = {
     Resolution.HUMAN_FINISH: "the human finished {name}",
     Resolution.ROBOT_FINISH: "the robot goes on with {name}",
     Resolution.COLLAB_FINISH: "both finish {name} together",
-    Resolution.ROBOT_RETRY: "the robot will try {name} again",
+    Resolution.ROBOT_RETRY: "the robot tries {name} again, if an attempt is left",
 }
 
 CLOSINGS: dict[CloseReason, str] = {
@@ -203,7 +203,10 @@ class Transcript:
         | ev.SiteOpened
         | ev.SiteGivenBack
         | ev.SiteRestarted
-        | ev.SiteClosed,
+        | ev.SiteClosed
+        | ev.RequestChanged
+        | ev.PlanChanged
+        | ev.FleetTold,
     ) -> list[Line]:
         return []  # It belongs to no run.
 
@@ -335,7 +338,8 @@ class Transcript:
     @lines.register
     def _(self, event: ev.HelpNotSeen) -> list[Line]:
         how = "feel" if event.help in _FELT else "see"
-        text = f"does not {how} {_promised(event)}"
+        why = f": {event.blind}" if event.blind else ""
+        text = f"does not {how} {_promised(event)}{why}"
         return [_line(event, self._robot(event.robot), text, Tone.SETBACK)]
 
     @lines.register
@@ -423,7 +427,9 @@ def deed_text(intervention: Intervention) -> str:
 def finished_text(missing: Sequence[ev.MissingPart], unseen: Sequence[ev.UnseenPart] = ()) -> str:
     """What a finished run came to: what was left out, and what nobody can see now."""
     hidden = joined([each.object for each in unseen])
-    return _without(missing) + (f"; the last look did not show {hidden} there" if hidden else "")
+    return _without(missing) + (
+        f"; the last look could not tell whether {hidden} stayed there" if hidden else ""
+    )
 
 
 def _without(missing: Sequence[ev.MissingPart]) -> str:

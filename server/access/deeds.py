@@ -63,7 +63,8 @@ DEEDS: frozenset[str] = frozenset(
         "run_started", "run_paused", "run_resumed", "run_aborted", "intervention_accepted",
         "answered", "claimed", "released", "deadline_extended",
         "document_kept", "document_deleted", "signed_in", "sign_in_failed", "signed_out",
-        "access_changed", "site_opened", "site_closed", "node_taken",
+        "access_changed", "site_opened", "site_closed", "node_taken", "request_changed",
+        "fleet_told",
     }
 )  # fmt: skip
 """The types of events that are deeds; some of them only where somebody did them."""
@@ -132,6 +133,14 @@ def _deed(
     )
 
 
+_ASKED = {
+    "cancelled": "no longer wanted",
+    "returning": "no longer wanted",
+    "refused": "asked in vain for",
+}
+"""What somebody did with a request, by how it stood then."""
+
+
 def _what(event: ev.Event) -> str | None:
     match event:
         case ev.RunStarted(tree_name=tree, world=world):
@@ -140,6 +149,10 @@ def _what(event: ev.Event) -> str | None:
             return f"opened a site with '{scene}' in '{world}'"
         case ev.SiteClosed(site=site):
             return f"closed the site {site}"
+        case ev.FleetTold(told=told):
+            return told
+        case ev.RequestChanged(author=ev.Author(), request=request, status=status):
+            return f"{_ASKED.get(status, 'asked for')} '{request}'"
         case ev.RunPaused():
             return "paused the run"
         case ev.RunResumed():

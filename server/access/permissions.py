@@ -39,6 +39,8 @@ def _documents(kind: str) -> tuple[Endpoint, ...]:
 
 _RUN = "/api/runs/{run}"
 _SITE = "/api/sites/{site}"
+_FLEET_ROBOT = _SITE + "/fleet/robots/{robot}"
+_REQUEST = "/api/requests/{name:path}"
 _DIALOGUE = "/api/dialogues/{dialogue}"
 _SPEECH = _DIALOGUE + "/prompts/{prompt}/speech"
 _PRINCIPAL = "/api/access/principals/{name}"
@@ -56,6 +58,15 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     Endpoint("list_site_events", "GET", _SITE + "/events", Role.VIEWER),
     Endpoint("open_site", "POST", "/api/sites", Role.OPERATOR),
     Endpoint("close_site", "DELETE", _SITE, Role.OPERATOR),
+    Endpoint("get_fleet", "GET", _SITE + "/fleet", Role.VIEWER),
+    Endpoint("take_robot_out", "POST", _FLEET_ROBOT + "/out_of_service", Role.OPERATOR),
+    Endpoint("put_robot_back", "POST", _FLEET_ROBOT + "/back_in_service", Role.OPERATOR),
+    Endpoint("tell_of_way", "POST", _SITE + "/fleet/ways", Role.OPERATOR),
+    Endpoint("list_requests", "GET", "/api/requests", Role.VIEWER),
+    Endpoint("get_request", "GET", _REQUEST, Role.VIEWER),
+    Endpoint("make_request", "POST", "/api/requests", Role.HELPER),
+    Endpoint("change_request", "PUT", _REQUEST, Role.HELPER),
+    Endpoint("cancel_request", "DELETE", _REQUEST, Role.HELPER),
     Endpoint("list_runs", "GET", "/api/runs", Role.VIEWER),
     Endpoint("get_run", "GET", _RUN, Role.VIEWER),
     Endpoint("list_events", "GET", _RUN + "/events", Role.VIEWER),

@@ -31,6 +31,7 @@ from mend.server.api.safe_headers import SAFE_HEADERS
 from mend.server.api.services import services_of
 from mend.server.descriptors import NO_DESCRIPTOR
 from mend.server.errors import BusyError, LostRaceError, NotConnectedError
+from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.journal.journal import JournalClosedError, JournalReadError, JournalWriteError
 from mend.server.limits import LimitName
 from mend.server.refusals import Refusals
@@ -60,7 +61,8 @@ SOON = {"Retry-After": "1"}
 class Problem(BaseModel):
     """Why a request was refused. `answered_by` on a lost race, `errors` one per mistake.
 
-    `not_connected`: the robots that are to come before it can be done.
+    `not_connected`: the robots that are to come before it can be done. `next_possible_s`: from when
+    until when a request could be met.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -73,6 +75,7 @@ class Problem(BaseModel):
     prompt: UUID | None = None
     errors: list[str] | None = None
     not_connected: list[str] | None = None
+    next_possible_s: list[float] | None = None
 
 
 class ProblemError(MendError):
@@ -110,6 +113,8 @@ def problem_of(error: Exception) -> Problem | None:
         return problem(status, str(error), answered_by=error.answered_by, prompt=error.prompt)
     if isinstance(error, NotConnectedError):
         return problem(status, str(error), not_connected=error.robots)
+    if isinstance(error, RequestRefusedError):
+        return problem(status, str(error), next_possible_s=error.next_possible_s)
     if isinstance(error, WrongInputError):
         return problem(status, str(error), errors=error.sentences or [str(error)])
     return problem(status, str(error))

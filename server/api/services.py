@@ -18,6 +18,7 @@ from mend.server.access.access import Access
 from mend.server.access.deed_log import DeedLog
 from mend.server.access.principal import Caller
 from mend.server.documents import DocumentLibrary
+from mend.server.fleets.fleets import Fleets
 from mend.server.journal.journal import Journal
 from mend.server.journal.subscriptions import Subscribers
 from mend.server.journal.writer import CommitStatistics
@@ -66,6 +67,7 @@ class Services:
     scenarios: DocumentLibrary
     worlds: WorldList
     sites: Sites
+    fleets: Fleets
     models: RobotModels
     poses: PoseSource
     settings: Settings

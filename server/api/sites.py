@@ -60,6 +60,7 @@ async def get_site(site: SiteId, services: WithServices) -> SiteView:
 )
 async def close_site(site: SiteId, services: WithServices, caller: WithCaller) -> None:
     """Stop a site's world for good; no run may be using it."""
+    await services.fleets.close_site(site)
     await services.sites.close_site(site, caller.author)
 
 

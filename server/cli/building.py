@@ -1,4 +1,4 @@
-"""`mend building`: import, make up, check and draw buildings."""
+"""`mend building`: import, make up, check and draw buildings, and have robots work there."""
 
 import re
 from pathlib import Path
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     name="building",
-    help="Import, make up, check and draw buildings.",
+    help="Import, make up, check and draw buildings, and have robots work there.",
     no_args_is_help=True,
     rich_markup_mode=None,
 )
@@ -23,6 +23,60 @@ OutputFile = Annotated[
     Path, typer.Option("--output", "-o", metavar="FILE", help="Where to write it, .yaml.")
 ]
 BuildingFile = Annotated[Path, typer.Argument(metavar="FILE", help="A building file.")]
+
+
+@app.command()
+def run(
+    scene: Annotated[
+        Path, typer.Argument(metavar="SCENE", help="A scene of a building (mend building scene).")
+    ],
+    requests: Annotated[Path, typer.Argument(metavar="REQUESTS", help="A request file.")],
+    seed: Annotated[int, typer.Option(help="Makes every chance in it repeatable.")] = 0,
+    speed: Annotated[
+        str, typer.Option(help="Simulated seconds per second, or max for as fast as possible.")
+    ] = "max",
+    option: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=VALUE",
+            help="What the building has to choose (docs/buildings.md); may be given several times.",
+        ),
+    ] = None,
+    capacity: Annotated[float, typer.Option(help="How many loads a basket takes.")] = 3.0,
+    transfer: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PLACE", help="Where things may change robots; may be repeated."),
+    ] = None,
+    journal: Annotated[Path | None, typer.Option(help="Where to keep its journal.")] = None,
+) -> None:
+    """Have robots meet the requests of a file, helped by somebody who does what they ask.
+
+    Prints what happens; the exit code is 0 where everything was done.
+    """
+    import asyncio
+
+    from mend.fleet.request_file import read_request_file
+    from mend.server.cli.journals import new_run_journal
+    from mend.server.cli.run_request import closed_settings, read_options, read_speed
+    from mend.server.cli.shift import Shift
+    from mend.server.cli.task_files import read_scene
+    from mend.server.sites.requests import FleetOptions
+
+    with told_plainly():
+        own = closed_settings()
+        settings = own.model_copy(update={"journal": journal or new_run_journal(own, "shift")})
+        shift = Shift(
+            read_scene(scene),
+            read_request_file(requests).requests,
+            seed=seed,
+            options=read_options(option or []),
+            fleet=FleetOptions(
+                capacity=capacity, transfer_places=tuple(transfer or ()), answers="yes"
+            ),
+            speed=read_speed(speed),
+        )
+        code = asyncio.run(shift.carry_out(settings))
+    raise typer.Exit(code)
 
 
 @app.command("import", short_help="Import a plan of Open-RMF, or CoBot navigation graphs.")

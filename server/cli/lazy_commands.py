@@ -23,10 +23,11 @@ SUMMARIES = {
     "replay": "Tell a run again from its journal.",
     "train-colors": "Learn the colours of objects.",
     "access": "Say who may do what, and see who did what.",
-    "building": "Import, make up, check and draw buildings.",
+    "building": "Import, make up and draw buildings, and run robots there.",
     "map": "Build and clean up vector maps.",
     "journal": "Check, prune, back up and restore a journal.",
     "scene": "Make up scenes.",
+    "request": "Ask a building's robots for something.",
     "site": "Open, list, show and close worlds that stay.",
 }
 """Each `some-name` is the group `app` of its module `some_name`, or its function `some_name`."""

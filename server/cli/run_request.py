@@ -34,14 +34,19 @@ def settings_of_its_own(
 
     With `takes_robots` robots come in as they do with `mend serve`, by the same settings.
     """
+    own = load_settings(log_level="warning") if takes_robots else closed_settings()
+    chosen = journal or new_run_journal(own, files.tree)
+    return own.model_copy(update={"journal": chosen})
+
+
+def closed_settings() -> Settings:
+    """Of a service that only this process can use."""
     closed: dict[str, Any] = {
         "host": "127.0.0.1",
         "port": 0,
         "token": SecretStr(secrets.token_urlsafe(32)),
     }
-    own = load_settings(log_level="warning", **({} if takes_robots else closed))
-    chosen = journal or new_run_journal(own, files.tree)
-    return own.model_copy(update={"journal": chosen})
+    return load_settings(log_level="warning", **closed)
 
 
 def answers_given(text: str | None, scenario: Scenario | None) -> Answers | None:

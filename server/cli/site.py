@@ -56,6 +56,14 @@ def open_site(
             help="What the world has to choose (docs/worlds.md); may be given several times.",
         ),
     ] = None,
+    fleet: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ANSWERS",
+            help="Its robots take requests, in a building; who answers them: live helpers, or yes "
+            "for somebody who does whatever is asked.",
+        ),
+    ] = None,
     url: Url = SERVICE,
     token: Token = None,
 ) -> None:
@@ -72,10 +80,11 @@ def open_site(
             speed=read_speed(speed),
             seed=seed,
             world_options=read_options(option or []),
+            fleet=None if fleet is None else {"answers": fleet},
         )
         return str((await client.open_site(request)).id)
 
-    typer.echo(_asked(url, token, open_it))
+    typer.echo(asked(url, token, open_it))
 
 
 @app.command("list")
@@ -90,7 +99,7 @@ def list_sites(url: Url = SERVICE, token: Token = None) -> None:
                 f"{each.opened:%Y-%m-%d %H:%M}",
                 f"{sum(robot.run is None for robot in each.robots)} of {len(each.robots)}",
             )
-            for each in _asked(url, token, lambda client: client.sites())
+            for each in asked(url, token, lambda client: client.sites())
         ],
         ("site", "scene", "world", "opened (UTC)", "free"),
     )
@@ -101,7 +110,7 @@ def show(site: Site, url: Url = SERVICE, token: Token = None) -> None:
     """Show one site: its robots, the runs that have them, and where runs have left parts."""
     from mend.server.cli.site_names import find_site
 
-    for line in _described(_asked(url, token, lambda client: find_site(client, site))):
+    for line in _described(asked(url, token, lambda client: find_site(client, site))):
         typer.echo(line)
 
 
@@ -115,7 +124,7 @@ def close(site: Site, url: Url = SERVICE, token: Token = None) -> None:
         await client.close_site(found.id)
         return f"site {found.id} is closed"
 
-    typer.echo(_asked(url, token, close_it))
+    typer.echo(asked(url, token, close_it))
 
 
 def _described(site: "SiteView") -> list[str]:
@@ -130,7 +139,7 @@ def _described(site: "SiteView") -> list[str]:
     return [*lines, *(f"{part} is at {place}" for part, place in sorted(site.moved.items()))]
 
 
-def _asked(url: str, token: str | None, ask: "Callable[[MendClient], Awaitable[T]]") -> T:
+def asked(url: str, token: str | None, ask: "Callable[[MendClient], Awaitable[T]]") -> T:
     """What a service answers. Raises `CommandLineError`."""
     from mend.server.client import MendClient
 

@@ -306,11 +306,16 @@ class HelpVerified(DialogueEvent):
 
 
 class HelpNotSeen(DialogueEvent):
-    """The robot did not see the promised help in time; `felt`: what its basket felt instead."""
+    """The robot did not see the promised help in time.
+
+    `felt`: what its basket felt instead. `blind`: why it could see nothing; None if it saw that
+    there was none.
+    """
 
     type: Literal["help_not_seen"] = "help_not_seen"
     help: Help
     felt: Felt | None = None
+    blind: str | None = None
 
 
 class Resolved(DialogueEvent):
@@ -656,6 +661,51 @@ class SiteClosed(SiteEvent):
     author: Author | None = None
 
 
+class FleetEvent(SiteEvent):
+    """An event of the fleet of a site; `at_s` is of the site's clock."""
+
+    at_s: float
+
+
+class RequestChanged(FleetEvent):
+    """A request was made, or has come further: `what` is wanted and how far that is.
+
+    `robot` is to be done with it at `done_s`; None where no robot is to do anything for it.
+    `author`: who has asked for this change.
+    """
+
+    type: Literal["request_changed"] = "request_changed"
+    request: str
+    what: dict[str, Any]
+    status: str
+    reason: str | None
+    robot: str | None
+    done_s: float | None
+    author: Author | None = None
+
+
+class PlanChanged(FleetEvent):
+    """The plan of a fleet became another one, and why; whom that touches.
+
+    `said`: a sentence by request or robot.
+    """
+
+    type: Literal["plan_changed"] = "plan_changed"
+    number: int
+    reason: str
+    requests: list[str]
+    robots: list[str]
+    said: dict[str, str]
+
+
+class FleetTold(FleetEvent):
+    """An operator told a fleet something: what that was, as `took r0 out of service: a squeak`."""
+
+    type: Literal["fleet_told"] = "fleet_told"
+    told: str
+    author: Author | None = None
+
+
 AnyEvent = Annotated[
     RunStarted
     | NodeStarted
@@ -704,7 +754,10 @@ AnyEvent = Annotated[
     | SiteOpened
     | SiteGivenBack
     | SiteRestarted
-    | SiteClosed,
+    | SiteClosed
+    | RequestChanged
+    | PlanChanged
+    | FleetTold,
     Field(discriminator="type"),
 ]
 

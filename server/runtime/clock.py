@@ -43,6 +43,11 @@ class WorldTime:
     def __init__(self) -> None:
         self._latest_s = -math.inf
 
+    @property
+    def latest_s(self) -> float:
+        """The latest time that was heard; minus infinity where none was."""
+        return self._latest_s
+
     def heard(self, robot_time: float) -> float:
         """A robot's clock says this, or said it a while ago; returns what it must be by now."""
         self._latest_s = max(self._latest_s, robot_time)

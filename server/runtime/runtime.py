@@ -152,9 +152,13 @@ class Runtime:
 
         Raises `NotFoundError`, `WrongInputError` or `ConflictError`.
         """
-        if await self._journal.index.find(run) is not None:
+        if await self.has_run(run):
             return await self.run_summary(run)
         return await self._start(lambda: self._new_runs.make_of(run, request, tree))
+
+    async def has_run(self, run: UUID) -> bool:
+        """Whether there is such a run, whatever has become of it."""
+        return await self._journal.index.find(run) is not None
 
     async def _start(self, make: Callable[[], Awaitable[NewRun]]) -> RunSummary:
         self._refuse_one_too_many()

@@ -14,6 +14,7 @@ from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
 from mend.server.runtime.team import Neighbour
 from mend.server.sites.running_world import RunningWorld
 from mend.tasks.frames import Frame
+from mend.tasks.potential import Point
 
 if TYPE_CHECKING:
     from mend.server.runtime.run import Run
@@ -49,6 +50,7 @@ class Site:
         self._restarted = restarted
         self._frames = dict(robots)
         self._resting = {name: self._at_rest(name) for name in robots}
+        self._seen_at: dict[str, Point] = {}
         self._handed_over: dict[str, RobotProxy] = {}
         self._runs: dict[UUID, Run] = {}
         self.forgotten = False
@@ -71,9 +73,18 @@ class Site:
         """Which run has a robot."""
         return next((run for run, each in self._runs.items() if robot in each.proxies), None)
 
-    def free_robots(self) -> list[str]:
-        """The robots that no run has and that rest here, connected."""
-        return [each for each, proxy in self._resting.items() if proxy.doing is RobotActivity.IDLE]
+    def rests(self, robot: str) -> bool:
+        """Whether it is connected, and no run has it."""
+        proxy = self._resting.get(robot)
+        return proxy is not None and (proxy.free or proxy.interruptible)
+
+    def is_connected(self, robot: str) -> bool:
+        """Whether a robot is there, whoever has it."""
+        return self._registry.connected(robot)
+
+    def whereabouts(self, robot: str) -> Point | None:
+        """Where a robot was when a run's look last said so, in the scene's frame."""
+        return self._seen_at.get(robot)
 
     def let_time_pass(self, until_s: float, rate: float | None) -> bool:
         """Have the world's clock run until then, also where no run has a robot.
@@ -81,9 +92,8 @@ class Site:
         `rate`: simulated seconds per second, None as fast as possible. False if nobody is free to
         wait for that.
         """
-        waiting = RobotActivity.IDLE, RobotActivity.WAITING
         for proxy in self._resting.values():
-            if proxy.doing in waiting:
+            if proxy.free or proxy.interruptible:
                 proxy.hold(until_s, rate)
                 return True
         return False
@@ -199,6 +209,7 @@ class Site:
             self._handed_over.pop(robot, None)
             resting = self._at_rest(robot)
             resting.hello, resting.area = proxy.hello, proxy.area
+            self._seen_at[robot] = proxy.gripper
             self._resting[robot] = resting
         self.tell_neighbours(run)
         self.changed()

@@ -8,6 +8,7 @@ from uuid import UUID
 from pydantic import BaseModel, ConfigDict
 
 from mend.server.journal import events as ev
+from mend.server.sites.requests import FleetOptions
 from mend.sim.world import WorldSetup
 from mend.tasks.scene import Scatter, Scene
 
@@ -33,6 +34,7 @@ class SiteRecord(BaseModel):
     options: dict[str, Any]
     moved: dict[str, str] = {}
     author: ev.Author | None = None
+    fleet: FleetOptions | None = None
 
     @property
     def scene_now(self) -> Scene:

@@ -115,6 +115,10 @@ class Sites:
         refuse_too_many_options(request.world_options, self._limits)
         self._worlds.check(request.world, request.world_options)
         scene = await self._scenes.scene(request.scene)
+        if request.fleet is not None and not scene.setting:
+            raise WrongInputError(
+                f"'fleet' is for the robots of a building, and the scene '{request.scene}' is none"
+            )
         if len(self._sites) + self._opening >= self._limits.sites:
             raise ConflictError(
                 f"{self._limits.sites} sites are open, and at most so many may be: close one",
@@ -131,6 +135,7 @@ class Sites:
             speed=request.speed,
             options=dict(request.world_options),
             author=author,
+            fleet=request.fleet,
         )
         self._opening += 1
         try:
@@ -241,6 +246,19 @@ class Sites:
         self._find(site)
         return self._view(self._records[site])
 
+    def record(self, site: UUID) -> SiteRecord:
+        """What is kept of an open site. Raises `NotFoundError`."""
+        self._find(site)
+        return self._records[site]
+
+    def records(self) -> list[SiteRecord]:
+        """What is kept of every open site, in the order in which they were opened."""
+        return list(self._records.values())
+
+    def site(self, site: UUID) -> Site:
+        """An open site, its robots and who has them. Raises `NotFoundError`."""
+        return self._find(site)
+
     def _find(self, site: UUID) -> Site:
         if site not in self._sites or site not in self._records:
             raise NotFoundError(f"there is no site {site}; it may have been closed")
@@ -267,6 +285,7 @@ class Sites:
             opened=record.opened,
             robots=robots,
             moved=record.moved,
+            fleet=record.fleet,
         )
 
     # --- Runs ---------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ from typing import Literal
 from uuid import UUID
 
 from mend.server.runtime.views import View
+from mend.server.sites.requests import FleetOptions
 
 
 class SiteRobot(View):
@@ -17,7 +18,10 @@ class SiteRobot(View):
 
 
 class SiteView(View):
-    """An open site. `moved`: which part runs have left at which place."""
+    """An open site. `moved`: which part runs have left at which place.
+
+    `fleet`: how its robots take requests; None where they take none.
+    """
 
     id: UUID
     world: str
@@ -27,3 +31,4 @@ class SiteView(View):
     opened: datetime
     robots: list[SiteRobot]
     moved: dict[str, str]
+    fleet: FleetOptions | None = None

@@ -32,7 +32,14 @@ def requests() -> list[Request]:
 
 
 def _filled(path: str) -> str:
-    known = {"name": "nothing", "camera": "head", "model": "none", "file": "a.stl", "answer": "yes"}
+    known = {
+        "name": "nothing",
+        "camera": "head",
+        "model": "none",
+        "file": "a.stl",
+        "answer": "yes",
+        "robot": "nobody",
+    }
     for parameter in ("run", "site", "dialogue", "prompt", "picture"):
         path = path.replace(f"{{{parameter}}}", str(NOBODY))
     for parameter, value in known.items():

@@ -21,6 +21,7 @@ from mend.server.access.deed_log import DeedLog
 from mend.server.app import build_access, create_app
 from mend.server.documents import DocumentKind
 from mend.server.fixed_documents import GivenFiles, NamedTexts, fixed_documents
+from mend.server.fleets.fleets import Fleets
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.journaled_documents import JournaledDocuments
 from mend.server.library import Library, build_library
@@ -122,6 +123,7 @@ def build(
         DocumentKind.TREE, journal, NamedTexts(TREES), FakeTreeChecker(), utc_now=utc_now
     )
     poses = PoseFeed(lambda *_: None, lambda _: None, records)
+    sites = _no_sites(journal, library, utc_now)
     app = create_app(
         runs,
         journal,
@@ -130,7 +132,8 @@ def build(
         scenes=library.scenes,
         scenarios=library.scenarios,
         worlds=FakeWorlds(),
-        sites=_no_sites(journal, library, utc_now),
+        sites=sites,
+        fleets=Fleets(sites, runs, journal, utc_now=utc_now),
         models=RobotModels(models),
         poses=poses,
         access=access,

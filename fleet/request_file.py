@@ -1,0 +1,60 @@
+"""Request files: what people of a building want, one after the other."""
+
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field
+
+from mend.documents.document import DocumentError, LinedMapping, read_document, read_text
+from mend.documents.problem import InvalidFileError, Problem
+from mend.documents.strict_model import StrictModel
+from mend.documents.validation import find_line, show_kind, validate_part
+from mend.fleet.requests import Request
+
+MOST_REQUESTS = 1000
+
+
+class RequestFileError(InvalidFileError):
+    """A request file has mistakes."""
+
+
+class RequestsDocument(StrictModel):
+    """What a request file says."""
+
+    requests: Annotated[tuple[Request, ...], Field(min_length=1, max_length=MOST_REQUESTS)]
+
+
+def read_request_file(path: Path) -> RequestsDocument:
+    """Read and check a request file (YAML or JSON). Raises `RequestFileError`."""
+    try:
+        text = read_text(path)
+    except DocumentError as error:
+        raise RequestFileError(str(path), [error.problem]) from error
+    return read_request_text(text, source=str(path))
+
+
+def read_request_text(text: str, *, source: str = "requests") -> RequestsDocument:
+    """Check the text of a request file; `source` names it. Raises `RequestFileError`."""
+    try:
+        content, problems = read_document(text)
+    except DocumentError as error:
+        raise RequestFileError(source, [error.problem]) from error
+    if not isinstance(content, LinedMapping):
+        message = f"a request file is a mapping with 'requests', but this is {show_kind(content)}"
+        raise RequestFileError(source, [*problems, Problem(1, None, message)])
+    document, wrong = validate_part(RequestsDocument, content)
+    problems += wrong
+    if document is not None:
+        names = [each.name for each in document.requests]
+        problems += [
+            Problem(
+                find_line(content, ("requests", number, "name")),
+                None,
+                f"two requests are called '{name}': give each a name of its own",
+            )
+            for number, name in enumerate(names)
+            if name in names[:number]
+        ]
+    if document is None or problems:
+        raise RequestFileError(source, problems)
+    return document

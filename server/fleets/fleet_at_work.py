@@ -1,0 +1,307 @@
+"""The fleet of one site at work: it hands out legs as runs, and hears what becomes of them."""
+
+import asyncio
+from collections.abc import AsyncIterator, Callable, Mapping
+from contextlib import asynccontextmanager
+from datetime import datetime
+from functools import partial
+from typing import TypeVar
+from uuid import UUID
+
+from mend.errors import ConflictError, NotFoundError
+from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
+from mend.fleet.dispatch.dispatcher import Dispatcher
+from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd, LegOutcome
+from mend.server.background import Endless
+from mend.server.fleets.fleet_news import FleetNews
+from mend.server.fleets.fleet_record import FleetRecord
+from mend.server.fleets.fleets import KIND
+from mend.server.fleets.leg_execution import LegExecution, LegTurn
+from mend.server.fleets.leg_task import require_doable
+from mend.server.fleets.operator_requests import WayFound
+from mend.server.fleets.place_names import PlaceNames
+from mend.server.fleets.request_refused import RequestRefusedError
+from mend.server.fleets.runs import Runs
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Document, Entry, Journal
+from mend.server.sites.requests import FleetOptions
+from mend.server.sites.site import Site
+from mend.tasks.plugins import load_plugins
+
+T = TypeVar("T")
+
+LOOKS_AGAIN_S = 5.0
+"""While a robot waits at the place of its leg, the leg is looked after that often (site's time)."""
+
+
+class FleetAtWork:
+    """One dispatcher, and the robots of a site that do what it says.
+
+    What it decides is in the journal before a robot hears of it. `pace`: simulated seconds per
+    second, None as fast as possible.
+    """
+
+    def __init__(
+        self,
+        site: Site,
+        dispatcher: Dispatcher,
+        places: PlaceNames,
+        options: FleetOptions,
+        runs: Runs,
+        journal: Journal,
+        pace: float | None,
+        utc_now: Callable[[], datetime],
+        out_of_service: Mapping[str, str],
+    ) -> None:
+        self.dispatcher = dispatcher
+        self._site = site
+        self.places = places
+        self._options = options
+        self._runs = runs
+        self._journal = journal
+        self._pace = pace
+        self._news = FleetNews(site.id, dispatcher, utc_now)
+        self._at_once = asyncio.Lock()
+        self._changed = asyncio.Event()
+        self._legs: dict[str, tuple[LegExecution, asyncio.Task[None]]] = {}
+        self._behaviors = load_plugins("mend.behaviors")
+        self._main: asyncio.Task[None] | None = None
+        self._kept: FleetRecord | None = None
+        self._noted: list[ev.Event] = []
+        self.out_of_service = dict(out_of_service)
+        """The robots that somebody has taken out, and why."""
+
+    # --- Its life -----------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Begin to work; legs that were under way go on."""
+        self._site.changed = self._changed.set
+        self._changed.set()
+        self._main = asyncio.create_task(self._work(), name=f"fleet of {self._site.id}")
+
+    async def stop(self) -> None:
+        """Stop without ending anything: it goes on from the journal."""
+        self._site.changed = lambda: None
+        tasks = [task for _, task in self._legs.values()]
+        if self._main is not None:
+            tasks.append(self._main)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _work(self) -> None:
+        working = Endless(f"the fleet of site {self._site.id}")
+        while True:
+            await self._changed.wait()
+            self._changed.clear()
+            with working.one_pass():
+                await self._go_on()
+
+    async def _go_on(self) -> None:
+        async with self._at_once:
+            unwanted = await asyncio.to_thread(self._decide, self.now_s)
+            await self._keep()
+            under_way = self.dispatcher.legs_under_way()
+            for execution, _ in self._legs.values():
+                execution.look_again()
+            self._let_time_pass()
+        for leg in unwanted:
+            await self._legs[leg.robot][0].break_off()
+        for leg in under_way:
+            if leg.robot not in self._legs:
+                self._carry_out(leg)
+
+    def _decide(self, now_s: float) -> list[Leg]:
+        """Have robots that rest set out for what is due; the legs that are not wanted any more."""
+        for robot, known in self.dispatcher.fleet.robots.items():
+            if not known.works and robot not in self.out_of_service and self._site.rests(robot):
+                self.dispatcher.robot_back(robot, self._at(robot), now_s)
+        unwanted = self.dispatcher.legs_to_withdraw(now_s)
+        while due := [e for e in self.dispatcher.legs_to_begin(now_s) if self._site.rests(e.robot)]:
+            self.dispatcher.began(due[0], now_s)
+        return unwanted
+
+    @property
+    def site(self) -> UUID:
+        """The id of its site."""
+        return self._site.id
+
+    @property
+    def now_s(self) -> float:
+        """The site's clock, as far as it is known: it never goes back."""
+        return max(self.dispatcher.now_s, self._site.world.time.latest_s)
+
+    def _let_time_pass(self) -> None:
+        """Have the site's clock run to when there is something to be done, if there ever is."""
+        if not any(each.open for each in self.dispatcher.fleet.items.values()):
+            return
+        now_s, wakes_s = self.now_s, self.dispatcher.wakes_s()
+        if any(execution.waits for execution, _ in self._legs.values()):
+            wakes_s = min(now_s + LOOKS_AGAIN_S, wakes_s or now_s + LOOKS_AGAIN_S)
+        if wakes_s is not None:
+            self._site.let_time_pass(max(wakes_s, now_s + 1.0), self._pace)
+
+    # --- Legs ---------------------------------------------------------------------------------
+
+    def _carry_out(self, leg: Leg) -> None:
+        turn = LegTurn(
+            arrived=partial(self._arrived, leg),
+            may_begin=lambda: self.dispatcher.may_begin(leg, self.now_s),
+            now_s=lambda: self.now_s,
+        )
+        execution = LegExecution(self._site, leg, self.places, self._options, self._runs, turn)
+        task = asyncio.create_task(self._follow(leg, execution), name=f"leg of {leg.robot}")
+        self._legs[leg.robot] = execution, task
+
+    async def _follow(self, leg: Leg, execution: LegExecution) -> None:
+        async with self._at_once:
+            at_once = self.dispatcher.may_begin(leg, self.now_s)
+        end = await execution.run(at_once=at_once)
+        async with self._at_once:
+            if leg.robot in {each.robot for each in self.dispatcher.legs_under_way()}:
+                await asyncio.to_thread(self._end, leg, end)
+            del self._legs[leg.robot]
+            await self._keep()
+        self._changed.set()
+
+    def _end(self, leg: Leg, end: LegEnd) -> None:
+        robot, now_s = leg.robot, self.now_s
+        done = end.outcome is LegOutcome.DONE
+        gone = None if self._site.is_connected(robot) else end.reason or "it is gone"
+        why = self.out_of_service.get(robot, None if done else gone)
+        if done or why is None:
+            try:
+                self.dispatcher.ended(leg, end, now_s)
+            except ConflictError as error:
+                # What is said to be done cannot have been.
+                refused = LegEnd(outcome=LegOutcome.FAILED, reason=str(error)[:500], at=end.at)
+                self.dispatcher.ended(leg, refused, now_s)
+        if why is not None:
+            # Others fetch what it has, and do what it was to do.
+            self.dispatcher.robot_failed(robot, end.at, why, now_s)
+
+    def _at(self, robot: str) -> str:
+        """The place that a robot is nearest to, as far as is known."""
+        where = self._site.whereabouts(robot)
+        place = None if where is None else self.places.nearest(*where)
+        known = self.dispatcher.fleet.robots[robot].place
+        return place or self.dispatcher.building.graph.places[known].name
+
+    async def _arrived(self, leg: Leg) -> None:
+        async with self._at_once:
+            self.dispatcher.arrived(leg, self.now_s)
+            await self._keep()
+        self._changed.set()
+
+    # --- What people ask ----------------------------------------------------------------------
+
+    async def submit(self, request: AnyRequest, author: ev.Author | None) -> RequestView:
+        """Book a request. Raises `RequestRefusedError`, what `Dispatcher.submit` does, and
+        `WrongInputError` for what no robot does, or where none goes.
+        """
+        self._require_doable(request)
+        first = request.name if request.recurrence is None else f"{request.name}/1"
+        async with self._told(author, request.name):
+            answer = await asyncio.to_thread(self.dispatcher.submit, request, self.now_s)
+            return self._booked(first, answer)
+
+    async def change(self, name: str, request: AnyRequest, author: ev.Author | None) -> RequestView:
+        """Other words for what nobody has set out for. Raises what `submit` does."""
+        self._require_doable(request)
+        async with self._told(author, name):
+            answer = await asyncio.to_thread(self.dispatcher.change, name, request, self.now_s)
+            return self._booked(name, answer)
+
+    def _booked(self, name: str, answer: Answer) -> RequestView:
+        if not answer.booked:
+            raise RequestRefusedError(name, answer)
+        return self.dispatcher.view(name)
+
+    async def cancel(self, name: str, author: ev.Author | None) -> RequestView | None:
+        """What was asked for is not wanted any more. Raises as `Dispatcher.cancel`."""
+        async with self._told(author, name):
+            return self.dispatcher.cancel(name, self.now_s)
+
+    # --- What operators say -------------------------------------------------------------------
+
+    async def found(self, way: WayFound, author: ev.Author | None) -> None:
+        """A way was found blocked, or open. Raises as `Dispatcher.found`."""
+        a, b = way.between
+        found = Found(finding=Finding(way.finding), between=(a, b), until_s=way.until_s)
+        async with self._told():
+            self.dispatcher.found(found, self.now_s)
+            finding = way.finding.replace("_", " ")
+            self._note(f"said of the way between {a} and {b}: {finding}", author)
+
+    async def take_out(self, robot: str, reason: str, author: ev.Author | None) -> None:
+        """A robot is to do nothing more for now; others fetch what it has.
+
+        Raises `NotFoundError`, and `ConflictError` where it is out of service already.
+        """
+        async with self._told():
+            self._require_robot(robot)
+            if robot in self.out_of_service:
+                raise ConflictError(f"robot '{robot}' is out of service already")
+            self.out_of_service[robot] = reason
+            self._note(f"took {robot} out of service: {reason}", author)
+            leg = next((e for e in self.dispatcher.legs_under_way() if e.robot == robot), None)
+            if leg is None and self.dispatcher.fleet.robots[robot].works:
+                self.dispatcher.robot_failed(robot, self._at(robot), reason, self.now_s)
+        if leg is not None and robot in self._legs:
+            await self._legs[robot][0].break_off()
+
+    async def put_back(self, robot: str, author: ev.Author | None) -> None:
+        """A robot works again, from where it stands.
+
+        Raises `NotFoundError`, and `ConflictError` where nobody has taken it out of service.
+        """
+        async with self._told():
+            self._require_robot(robot)
+            if self.out_of_service.pop(robot, None) is None:
+                raise ConflictError(f"robot '{robot}' is in service")
+            self._note(f"put {robot} back in service", author)
+
+    def _note(self, told: str, author: ev.Author | None) -> None:
+        """Something an operator has told, to be journaled with what comes of it."""
+        self._noted.append(self._news.told(told, author))
+
+    def _require_robot(self, robot: str) -> None:
+        if robot not in self.dispatcher.fleet.robots:
+            known = ", ".join(self.dispatcher.fleet.robots)
+            raise NotFoundError(f"this fleet has no robot '{robot}'; it has {known}")
+
+    def _require_doable(self, request: AnyRequest) -> None:
+        for place in request.places:
+            self.places.in_scene(place)
+        require_doable(request, self._behaviors)
+
+    @asynccontextmanager
+    async def _told(self, author: ev.Author | None = None, asked: str = "") -> AsyncIterator[None]:
+        """Journal what comes of it, before anybody hears of it."""
+        async with self._at_once:
+            try:
+                yield
+            finally:
+                # Also what was refused is known from then on.
+                await self._keep(author, asked.split("/", 1)[0])
+                self._changed.set()
+
+    async def read(self, view: Callable[[Dispatcher], T]) -> T:
+        """What a view of its dispatcher shows, while nothing changes there."""
+        async with self._at_once:
+            return view(self.dispatcher)
+
+    # --- What is kept -------------------------------------------------------------------------
+
+    async def _keep(self, author: ev.Author | None = None, asked: str = "") -> None:
+        """Write down what has changed. Waits as long as the journal cannot be written."""
+        events = [*self._noted, *self._news.since(author, asked)]
+        self._noted.clear()
+        record = FleetRecord(
+            dispatcher=self.dispatcher.snapshot(), out_of_service=self.out_of_service
+        )
+        if not events and record == self._kept:
+            return
+        document = Document(KIND, str(self._site.id), record.model_dump_json())
+        await self._journal.append(Entry(events=events, document=document), patient=True)
+        self._kept = record

@@ -1,0 +1,76 @@
+"""What has become of a fleet's requests and plan since it was last told."""
+
+from collections.abc import Callable
+from datetime import datetime
+from uuid import UUID
+
+from mend.fleet.dispatch.booking import PlanChange, RequestView
+from mend.fleet.dispatch.dispatcher import Dispatcher
+from mend.server.journal import events as ev
+
+
+class FleetNews:
+    """Makes the events of a fleet, each once."""
+
+    def __init__(self, site: UUID, dispatcher: Dispatcher, utc_now: Callable[[], datetime]) -> None:
+        self._site = site
+        self._dispatcher = dispatcher
+        self._utc_now = utc_now
+        self._told = {each.name: _state(each) for each in dispatcher.views()}
+        self._changes = max((each.number for each in dispatcher.log), default=0)
+
+    def since(self, author: ev.Author | None = None, asked: str = "") -> list[ev.Event]:
+        """What is new; `author` is who has asked for the request `asked`, or wants it no more."""
+        views = {each.name: each for each in self._dispatcher.views()}
+        new = [each for each in views.values() if self._told.get(each.name) != _state(each)]
+        events: list[ev.Event] = [
+            self._request(each, author if each.name.split("/", 1)[0] == asked else None)
+            for each in new
+        ]
+        changes = [each for each in self._dispatcher.log if each.number > self._changes]
+        events += [self._change(each) for each in changes]
+        self._told = {name: _state(each) for name, each in views.items()}
+        self._changes = max((each.number for each in changes), default=self._changes)
+        return events
+
+    def told(self, told: str, author: ev.Author | None) -> ev.FleetTold:
+        """What an operator has told the fleet."""
+        return ev.FleetTold(
+            wall_time=self._utc_now(),
+            site=self._site,
+            at_s=self._dispatcher.now_s,
+            told=told,
+            author=author,
+        )
+
+    def _request(self, view: RequestView, author: ev.Author | None) -> ev.RequestChanged:
+        expected = view.expected
+        return ev.RequestChanged(
+            wall_time=self._utc_now(),
+            site=self._site,
+            at_s=self._dispatcher.now_s,
+            request=view.name,
+            what=view.request.model_dump(mode="json", exclude_none=True),
+            status=view.status,
+            reason=view.reason,
+            robot=None if expected is None else expected.robot,
+            done_s=None if expected is None else expected.done_s,
+            author=author,
+        )
+
+    def _change(self, change: PlanChange) -> ev.PlanChanged:
+        return ev.PlanChanged(
+            wall_time=self._utc_now(),
+            site=self._site,
+            at_s=change.at_s,
+            number=change.number,
+            reason=change.reason,
+            requests=list(change.requests),
+            robots=list(change.robots),
+            said=dict(change.said),
+        )
+
+
+def _state(view: RequestView) -> object:
+    """What is told when it has changed."""
+    return view.request, view.status, view.reason

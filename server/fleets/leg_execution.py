@@ -1,0 +1,157 @@
+"""One leg, carried out by runs of its robot: going there, waiting for its turn, and doing it."""
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from uuid import UUID
+
+from mend.errors import ConflictError, RefusalError, UnavailableError
+from mend.fleet.dispatch.leg import Leg, LegEnd, LegOutcome
+from mend.fleet.requests import GoToRoom, LegAction
+from mend.server.fleets.leg_task import LegStage, run_of, run_request, task_of, way_of
+from mend.server.fleets.place_names import PlaceNames
+from mend.server.fleets.runs import Runs
+from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.views import RunStatus, RunView
+from mend.server.sites.requests import FleetOptions
+from mend.server.sites.site import Site
+from mend.tasks.definition import TaskTreeDefinition
+
+log = logging.getLogger(__name__)
+
+TRIES_AGAIN_S = 1.0
+"""What could not be begun is tried again after so long (wall time)."""
+_LONGEST = 500
+
+
+@dataclass(frozen=True, slots=True)
+class LegTurn:
+    """What a leg has to wait for at its place, by the site's clock.
+
+    `arrived` says that its robot is there; `may_begin` is asked when things have changed.
+    """
+
+    arrived: Callable[[], Awaitable[None]]
+    may_begin: Callable[[], bool]
+    now_s: Callable[[], float]
+
+
+class LegExecution:
+    """Carries out a leg; after a restart the same runs are found again by their ids."""
+
+    def __init__(
+        self,
+        site: Site,
+        leg: Leg,
+        places: PlaceNames,
+        options: FleetOptions,
+        runs: Runs,
+        turn: LegTurn,
+    ) -> None:
+        self._site, self._leg, self._places = site, leg, places
+        self._options, self._runs, self._turn = options, runs, turn
+        self._run: UUID | None = None
+        self._broken_off = False
+        self._waiting: asyncio.Future[None] | None = None
+        self._ready: Callable[[], bool] = lambda: True
+
+    @property
+    def waits(self) -> bool:
+        """Whether its robot is there, and waits for its time."""
+        return self._waiting is not None
+
+    def look_again(self) -> None:
+        """Time has passed, or others have done something: it may be its turn."""
+        waiting = self._waiting
+        if waiting is not None and not waiting.done() and (self._broken_off or self._ready()):
+            waiting.set_result(None)
+
+    async def break_off(self) -> None:
+        """It is not wanted any more; `run` says that it was withdrawn, unless it was done."""
+        self._broken_off = True
+        self.look_again()
+        if self._run is not None:
+            try:
+                await self._runs.abort(self._run)
+            except ConflictError:
+                # It has ended meanwhile.
+                return
+
+    async def run(self, *, at_once: bool) -> LegEnd:
+        """Carry it out, and say what came of it.
+
+        `at_once`: what is to be done may be done as soon as the robot is there.
+        """
+        try:
+            return await self._stages(at_once=at_once)
+        except RefusalError as error:
+            return LegEnd(outcome=LegOutcome.FAILED, reason=str(error)[:_LONGEST])
+        except Exception:
+            # Nobody waits for it but the dispatcher, which would wait for ever.
+            log.exception("a leg of %s could not be carried out", self._leg.robot)
+            return LegEnd(outcome=LegOutcome.FAILED, reason="a fault of Mend's own; see its log")
+
+    async def _stages(self, *, at_once: bool) -> LegEnd:
+        leg, place = self._leg, self._places.in_scene(self._leg.place)
+        visits = leg.action is LegAction.VISIT
+        doing = run_of(self._site.id, leg, LegStage.DO)
+        if visits or not (at_once or await self._runs.has_run(doing)):
+            end = await self._done(LegStage.GO, way_of(place))
+            if end.outcome is not LegOutcome.DONE:
+                return end
+            await self._wait()
+            if self._broken_off:
+                return LegEnd(outcome=LegOutcome.WITHDRAWN, at=self._at())
+        return end if visits else await self._done(LegStage.DO, task_of(leg, place))
+
+    async def _wait(self) -> None:
+        """Stay until it is time, and as long as somebody wants the robot there."""
+        turn, request = self._turn, self._leg.request
+        leaves_s = turn.now_s() + (request.stay_s if isinstance(request, GoToRoom) else 0.0)
+        self._ready = lambda: turn.now_s() >= leaves_s and turn.may_begin()
+        self._waiting = asyncio.get_running_loop().create_future()
+        try:
+            await turn.arrived()
+            await self._waiting
+        finally:
+            self._waiting = None
+
+    async def _done(self, stage: LegStage, tree: TaskTreeDefinition) -> LegEnd:
+        """What came of one of its runs."""
+        leg, run = self._leg, run_of(self._site.id, self._leg, stage)
+        request = run_request(self._site.id, leg, self._options)
+        while not await self._is_begun(run, request, tree):
+            if self._broken_off:
+                return LegEnd(outcome=LegOutcome.WITHDRAWN, at=self._at())
+            await asyncio.sleep(TRIES_AGAIN_S)
+        self._run = run
+        view = await self._runs.wait_for_end(run)
+        if not view.status.ended:
+            # The service stops, and goes on with it at its next start.
+            await asyncio.Event().wait()
+        self._run = None
+        return self._end_of(view)
+
+    async def _is_begun(self, run: UUID, request: RunRequest, tree: TaskTreeDefinition) -> bool:
+        try:
+            await self._runs.start_run_of(run, request, tree)
+        except (ConflictError, UnavailableError):
+            # Another run has the robot, or there are too many.
+            return False
+        return True
+
+    def _end_of(self, run: RunView) -> LegEnd:
+        """What a run that has ended says of its leg."""
+        done = all(each.done for each in run.nodes)
+        if run.status is RunStatus.FINISHED and done:
+            return LegEnd(outcome=LegOutcome.DONE)
+        if self._broken_off:
+            return LegEnd(outcome=LegOutcome.WITHDRAWN, at=self._at())
+        said = run.result.reason if run.result is not None else str(run.status)
+        return LegEnd(outcome=LegOutcome.FAILED, reason=said[:_LONGEST], at=self._at())
+
+    def _at(self) -> str | None:
+        """The place that the robot is nearest to, as far as it has said where it is."""
+        where = self._site.whereabouts(self._leg.robot)
+        return None if where is None else self._places.nearest(*where)

@@ -1,0 +1,114 @@
+"""The runs of a leg: their ids, what is asked of them, and their tasks of one leaf."""
+
+import re
+from collections.abc import Mapping
+from enum import StrEnum
+from typing import Any
+from uuid import UUID, uuid5
+from zlib import crc32
+
+from pydantic import ValidationError
+
+from mend.documents.validation import describe_mistake
+from mend.errors import WrongInputError
+from mend.fleet.dispatch.booking import AnyRequest
+from mend.fleet.dispatch.leg import Leg
+from mend.fleet.requests import DeliverMessage, LegAction, Transport
+from mend.robots.execution.behavior import Behavior
+from mend.server.runtime.requests import RunRequest
+from mend.server.sites.requests import FleetOptions
+from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
+from mend.tasks.scenario import Person
+
+GO_TO = "go_to"
+BEHAVIORS = {
+    LegAction.DELIVER_MESSAGE: "deliver_message",
+    LegAction.COLLECT: "collect_item",
+    LegAction.TAKE: "collect_item",
+    LegAction.HAND_OVER: "hand_over_item",
+    LegAction.GIVE: "hand_over_item",
+    LegAction.BRING_BACK: "hand_over_item",
+}
+"""What robots do at the end of a leg, where there is more to it than being there."""
+_ARTICLE = re.compile(r"^(the|a|an)\s+", re.IGNORECASE)
+_NO_WORD = re.compile(r"[^A-Za-z0-9]+")
+_MOST_OF_WHAT = 31
+MOST_ANSWERS = 20
+"""So often a simulated person answers in one run."""
+
+
+class LegStage(StrEnum):
+    """What a run does of its leg."""
+
+    GO = "go"
+    DO = "do"
+
+
+def run_of(site: UUID, leg: Leg, stage: LegStage) -> UUID:
+    """The id of the run: the same one, however often it is asked for."""
+    return uuid5(site, f"{leg.robot} {leg.number} {stage}")
+
+
+def run_request(site: UUID, leg: Leg, options: FleetOptions) -> RunRequest:
+    """A run of one robot of the site."""
+    request = RunRequest(tree=leg.action, site=site, robots=[leg.robot], answers="live")
+    if options.answers == "live":
+        return request
+    person = {"answers": ["yes"] * MOST_ANSWERS, "person": Person(acts=True)}
+    return request.model_copy(update=person)
+
+
+def item_of(what: str, booking: str) -> str:
+    """What robots call a thing: as a person does, as far as names go, and each its own."""
+    words = _NO_WORD.sub("_", _ARTICLE.sub("", what.strip()))[:_MOST_OF_WHAT].strip("_")
+    words = words if words[:1].isalpha() else f"item_{words}".rstrip("_")
+    asked = _NO_WORD.sub("_", booking)
+    if len(asked) > _MOST_OF_WHAT:
+        asked = f"{asked[: _MOST_OF_WHAT - 9]}_{crc32(booking.encode()):08x}"
+    return words if words == asked else f"{words}-{asked}"
+
+
+def require_doable(request: AnyRequest, behaviors: Mapping[str, type[Behavior]]) -> None:
+    """Raises `WrongInputError` for what no behavior of a robot does, or not with such words."""
+    for action in {request.fetching, request.bringing} - {LegAction.VISIT}:
+        name = BEHAVIORS.get(action)
+        if name is None or name not in behaviors:
+            raise WrongInputError(f"no robot here can do a request of the kind '{request.kind}'")
+        parameters = {"place": "there", **_parameters(request, request.name)}
+        model = behaviors[name].parameters
+        try:
+            model.model_validate(parameters)
+        except ValidationError as error:
+            said = [describe_mistake(each, model) for each in error.errors(include_url=False)]
+            raise WrongInputError("; ".join(said), said) from error
+
+
+def way_of(place: str) -> TaskTreeDefinition:
+    """The task of going to a place, as the scene calls it."""
+    return _leaf(GO_TO, {"place": place})
+
+
+def task_of(leg: Leg, place: str) -> TaskTreeDefinition:
+    """The task of a leg; `place` is its place as the scene calls it.
+
+    Raises `WrongInputError` for what no behavior does.
+    """
+    if leg.action not in BEHAVIORS:
+        raise WrongInputError(f"no behavior of a robot does '{leg.action}'")
+    parameters = {"place": place, **_parameters(leg.request, leg.booking)}
+    return _leaf(BEHAVIORS[leg.action], parameters)
+
+
+def _parameters(request: AnyRequest, booking: str) -> dict[str, Any]:
+    match request:
+        case DeliverMessage(message=message):
+            return {"message": message}
+        case Transport(what=what):
+            return {"item": item_of(what, booking)}
+        case _:
+            return {}
+
+
+def _leaf(behavior: str, parameters: dict[str, Any]) -> TaskTreeDefinition:
+    leaf = BehaviorNode(parent=None, name=behavior, behavior=behavior, parameters=parameters)
+    return TaskTreeDefinition(name=behavior, scene=None, nodes=[leaf])

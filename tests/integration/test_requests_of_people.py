@@ -1,0 +1,209 @@
+"""People of a building ask for things, and robots of a site do them, leg by leg."""
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from typing import Literal
+from uuid import UUID
+
+import pytest
+
+from mend.errors import NotFoundError, WrongInputError
+from mend.fleet.requests import DeliverMessage, GoToRoom, RequestStatus, Transport
+from mend.maps.building.building import Building
+from mend.maps.building.random_building import random_building
+from mend.server.client import MendClient
+from mend.server.client_errors import RefusedError
+from mend.server.composition import Service, open_service
+from mend.server.journal import events as ev
+from mend.server.journal.stored_event import read_event
+from mend.server.journal.subscriptions import Record
+from mend.server.settings import Settings
+from mend.server.sites.requests import FleetOptions, SiteRequest
+from mend.sim.building.scene import scene_of
+
+PATIENCE_S = 500.0
+OVER = {"done", "failed", "cancelled", "refused"}
+
+
+def settings(folder: Path) -> Settings:
+    return Settings(port=0, data_dir=folder, log_level="error", speech_voice="none")
+
+
+async def open_office(
+    service: Service, robots: int = 2, floors: int = 1, speed: float | Literal["max"] = "max"
+) -> UUID:
+    """A site whose robots know where they are, with somebody who always helps."""
+    scene = scene_of(Building(random_building(7, floors, 6)), "office", robots)
+    await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
+    site = await service.sites.open_site(
+        SiteRequest(
+            scene="office",
+            world="building",
+            speed=speed,
+            seed=3,
+            world_options={"localizer": "exact", "unmapped": 0.0, "shut_doors": 0.0},
+            fleet=FleetOptions(answers="yes"),
+        )
+    )
+    return site.id
+
+
+async def events_until(
+    service: Service, is_enough: Callable[[list[ev.Event]], bool]
+) -> list[ev.Event]:
+    """All events so far, once there are enough."""
+    events: list[ev.Event] = []
+    with service.journal.subscribe(0, 100_000) as records:
+        async for record in records:
+            events.append(read_event(record.seq, record.text))
+            if is_enough(events):
+                return events
+    raise AssertionError("the journal ended")
+
+
+async def records_of(service: Service) -> list[Record]:
+    return await service.journal.read_records(0, 100_000)
+
+
+def went(events: list[ev.Event]) -> dict[str, list[str]]:
+    """The statuses that each request went through."""
+    found: dict[str, list[str]] = {}
+    for each in events:
+        if isinstance(each, ev.RequestChanged):
+            found.setdefault(each.request, []).append(each.status)
+    return found
+
+
+async def until_over(service: Service, names: set[str]) -> dict[str, list[str]]:
+    """The statuses that requests went through, until all of them are over."""
+
+    def over(events: list[ev.Event]) -> bool:
+        now = went(events)
+        return all(now.get(name, [""])[-1] in OVER for name in names)
+
+    return went(await events_until(service, over))
+
+
+@pytest.mark.slow(20)
+async def test_rooms_that_are_asked_for_are_visited_by_all_robots(tmp_path: Path) -> None:
+    async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
+        site = await open_office(service)
+        for number in (1, 3, 5, 6):
+            request = GoToRoom(name=f"room{number}", place=f"10{number}")
+            _, booked = await service.fleets.submit(site, request, None)
+            assert booked.status is RequestStatus.BOOKED
+            assert booked.expected is not None
+        done = await until_over(service, {"room1", "room3", "room5", "room6"})
+        runs = await service.journal.index.counts()
+    assert done == {name: ["booked", "under_way", "done"] for name in done}
+    assert runs == {"finished": 4}
+
+
+@pytest.mark.slow(20)
+async def test_a_service_that_stopped_goes_on_with_what_its_robots_were_doing(
+    tmp_path: Path,
+) -> None:
+    async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
+        site = await open_office(service)
+        for number in (4, 6):
+            request = GoToRoom(name=f"room{number}", place=f"10{number}")
+            await service.fleets.submit(site, request, None)
+
+        def drives(events: list[ev.Event]) -> bool:
+            return sum(isinstance(each, ev.StepStarted) for each in events) > 0
+
+        await events_until(service, drives)
+    async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
+        done = await until_over(service, {"room4", "room6"})
+        runs = await service.journal.index.counts()
+    assert done == {name: ["booked", "under_way", "done"] for name in done}
+    assert runs == {"finished": 2}
+
+
+@pytest.mark.slow(40)
+async def test_things_are_brought_and_messages_told_over_two_floors(tmp_path: Path) -> None:
+    async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
+        site = await open_office(service, floors=2)
+        parcel = Transport(name="p", what="the parcel", origin="101", destination="203")
+        lunch = DeliverMessage(name="lunch", place="102", message="Lunch is ready.")
+        for request in (parcel, lunch):
+            await service.fleets.submit(site, request, None)
+        done = await until_over(service, {"p", "lunch"})
+        events = [read_event(each.seq, each.text) for each in await records_of(service)]
+    assert done["p"][-1] == done["lunch"][-1] == "done"
+    said = [each.text for each in events if isinstance(each, ev.Prompt)]
+    assert any("Please put the parcel p into my basket" in each for each in said)
+    assert any("Please take the parcel p out of my basket" in each for each in said)
+    assert any('"Lunch is ready."' in each for each in said)
+    deeds = [each.act for each in events if isinstance(each, ev.InterventionDone)]
+    assert deeds.count("put_in") == deeds.count("take_out") == 1
+
+
+@pytest.mark.slow(10)
+async def test_what_is_cancelled_while_a_robot_is_on_its_way_is_broken_off(tmp_path: Path) -> None:
+    async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
+        # Slow enough that it is on its way for long.
+        site = await open_office(service, robots=1, speed=2.0)
+        await service.fleets.submit(site, GoToRoom(name="far", place="106"), None)
+
+        def drives(events: list[ev.Event]) -> bool:
+            return any(isinstance(each, ev.StepStarted) for each in events)
+
+        await events_until(service, drives)
+        await service.fleets.cancel(site, "far", None)
+        await service.fleets.submit(site, GoToRoom(name="near", place="101"), None)
+        done = await until_over(service, {"far", "near"})
+        runs = await service.journal.index.counts()
+    assert done["far"][-1] == "cancelled"
+    assert done["near"] == ["booked", "under_way", "done"]
+    assert runs == {"aborted": 1, "finished": 1}
+
+
+@pytest.mark.slow(10)
+async def test_requests_are_made_followed_changed_and_cancelled_over_rest(tmp_path: Path) -> None:
+    async with (
+        open_service(settings(tmp_path)) as service,
+        MendClient(service.url) as client,
+        asyncio.timeout(PATIENCE_S),
+    ):
+        site = await open_office(service, robots=1)
+        later = GoToRoom(name="later", place="101", earliest_s=3000.0)
+        booked = await client.make_request(later)
+        assert (booked.site, booked.status) == (site, "booked")
+        assert booked.expected is not None
+        assert booked.expected.begins_s >= 3000.0
+        too_soon = GoToRoom(name="soon", place="106", latest_s=1.0)
+        with pytest.raises(RefusedError, match="'soon' cannot be met") as refused:
+            await client.make_request(too_soon)
+        problem = refused.value.problem
+        assert problem.status == 409
+        assert problem.next_possible_s is not None
+        assert problem.next_possible_s[1] > 1.0
+        with pytest.raises(RefusedError, match="no place '999'"):
+            await client.make_request(GoToRoom(name="nowhere", place="999"))
+        with pytest.raises(RefusedError, match="there is a request 'later' already"):
+            await client.make_request(later)
+        known = {each.name: each.status for each in await client.requests()}
+        assert known == {"later": "booked", "soon": "refused"}
+        changed = await client.change_request("later", later.model_copy(update={"place": "103"}))
+        assert changed.what["place"] == "103"
+        assert [each.request for each in (await client.fleet(site)).robots[0].stops] == [
+            "later"
+        ] * 2
+        with pytest.raises(RefusedError, match="has open requests, 'later' first"):
+            await client.close_site(site)
+        await client.cancel_request("later")
+        assert (await client.request("later")).status == "cancelled"
+        await client.close_site(site)
+        deeds = [each.what for each in (await client.deeds()).deeds]
+    assert "asked for 'later'" in deeds
+    assert "no longer wanted 'later'" in deeds
+
+
+async def test_a_site_without_a_fleet_takes_no_requests(tmp_path: Path) -> None:
+    async with open_service(settings(tmp_path)) as service:
+        with pytest.raises(NotFoundError, match="open a site with 'fleet'"):
+            await service.fleets.submit(None, GoToRoom(name="there", place="101"), None)
+        with pytest.raises(WrongInputError, match="'fleet' is for the robots of a building"):
+            await service.sites.open_site(SiteRequest(scene="eket", fleet=FleetOptions()))

@@ -1,0 +1,55 @@
+"""`mend building run`: robots meet the requests of a file, and each line of it is so."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+MEND = str(Path(sys.executable).with_name("mend"))
+EXAMPLES = Path(__file__).parents[2] / "examples" / "buildings"
+SCENE, REQUESTS = EXAMPLES / "scenes" / "office_at_work.yaml", EXAMPLES / "requests.yaml"
+PATIENCE_S = 400.0
+
+
+def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("MEND_")}
+    return subprocess.run(
+        [MEND, "building", "run", *arguments],
+        env={**kept, "XDG_DATA_HOME": str(folder)},
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+    )
+
+
+@pytest.mark.slow(40)
+def test_the_shipped_requests_are_all_met(tmp_path: Path) -> None:
+    exact = ("--option", "localizer=exact", "--option", "unmapped=0")
+    done = run(tmp_path, str(SCENE), str(REQUESTS), *exact)
+    assert done.returncode == 0, done.stderr
+    lines = [line[10:] for line in done.stdout.splitlines()]
+    assert lines[-1] == "4 of 4 requests are done"
+    assert {f"'{name}' is done" for name in ("mail", "keys", "lunch", "visit")} <= set(lines)
+    times = [float(line[:8]) for line in done.stdout.splitlines()]
+    assert times == sorted(times)
+
+
+def test_what_cannot_be_met_is_refused_with_when_it_could_be(tmp_path: Path) -> None:
+    hasty = tmp_path / "requests.yaml"
+    hasty.write_text("requests: [{kind: go_to_room, name: r, place: F3/305, latest_s: 2}]\n")
+    done = run(tmp_path, str(SCENE), str(hasty))
+    assert done.returncode == 1, done.stderr
+    assert "refused: 'r' cannot be met" in done.stdout
+    assert "it would be possible" in done.stdout
+    assert done.stdout.splitlines()[-1].endswith("0 of 1 requests are done")
+
+
+def test_a_wrong_file_is_told_with_its_line(tmp_path: Path) -> None:
+    wrong = tmp_path / "requests.yaml"
+    wrong.write_text("requests:\n  - {kind: go_to_room, name: r, place: 101}\n")
+    done = run(tmp_path, str(SCENE), str(wrong))
+    assert done.returncode == 2
+    assert f"{wrong}:2: 'requests.0.go_to_room.place' must be text" in done.stderr
+    assert "Traceback" not in done.stderr

@@ -1,0 +1,83 @@
+"""The runs of a leg: what robots call things, and what none of them can do."""
+
+from uuid import UUID
+
+import pytest
+
+from mend.errors import WrongInputError
+from mend.fleet.dispatch.leg import Leg
+from mend.fleet.requests import DeliverMessage, Escort, GoToRoom, LegAction, Transport
+from mend.server.fleets.leg_task import (
+    BEHAVIORS,
+    LegStage,
+    item_of,
+    require_doable,
+    run_of,
+    task_of,
+)
+from mend.tasks.plugins import load_plugins
+
+SITE = UUID(int=7)
+PARCEL = Transport(name="p1", what="the blue parcel", origin="101", destination="102")
+
+
+def leg(number: int = 1, action: LegAction = LegAction.COLLECT) -> Leg:
+    return Leg(
+        robot="robot1",
+        number=number,
+        action=action,
+        place="F1/101",
+        booking="p1",
+        request=PARCEL,
+        begins_s=0.0,
+        done_s=30.0,
+        not_before_s=0.0,
+    )
+
+
+@pytest.mark.parametrize(
+    ("what", "booking", "called"),
+    [
+        ("the blue parcel", "p1", "blue_parcel-p1"),
+        ("the mail", "mail", "mail"),
+        ("A cup", "daily/3", "cup-daily_3"),
+        ("3 keys", "k", "item_3_keys-k"),
+        ("Schlüssel für 7002", "k", "Schl_ssel_f_r_7002-k"),
+        ("…", "k", "item-k"),
+        ("x" * 99, "y" * 64, f"{'x' * 31}-{'y' * 22}_4492a58b"),
+    ],
+)
+def test_a_thing_is_called_as_people_do_as_far_as_names_go(what, booking, called) -> None:
+    assert item_of(what, booking) == called
+
+
+def test_the_same_thing_is_meant_where_it_is_fetched_and_where_it_is_brought() -> None:
+    fetched, brought = (
+        task_of(leg(action=action), "F1-101").nodes[0]
+        for action in (LegAction.COLLECT, LegAction.HAND_OVER)
+    )
+    assert (fetched.behavior, brought.behavior) == ("collect_item", "hand_over_item")
+    assert fetched.parameters == brought.parameters == {"place": "F1-101", "item": "blue_parcel-p1"}
+
+
+def test_each_leg_has_its_own_runs_and_always_the_same() -> None:
+    runs = {run_of(SITE, leg(number), stage) for number in (1, 2) for stage in LegStage}
+    assert len(runs) == 4
+    assert run_of(SITE, leg(1), LegStage.DO) == run_of(SITE, leg(1), LegStage.DO)
+
+
+def test_what_no_robot_can_do_is_refused_before_it_is_booked() -> None:
+    behaviors = load_plugins("mend.behaviors")
+    require_doable(GoToRoom(name="r", place="101"), behaviors)
+    require_doable(PARCEL, behaviors)
+    with pytest.raises(WrongInputError, match="of the kind 'escort'"):
+        require_doable(Escort(name="e", person="Ann", origin="101", destination="102"), behaviors)
+    with pytest.raises(WrongInputError, match="of the kind 'transport'"):
+        require_doable(PARCEL, {})
+    quoted = DeliverMessage(name="m", place="101", message='She said "no".')
+    with pytest.raises(WrongInputError, match="no double quotation marks"):
+        require_doable(quoted, behaviors)
+
+
+def test_every_behavior_of_a_leg_is_one_that_robots_have() -> None:
+    assert set(BEHAVIORS.values()) <= load_plugins("mend.behaviors").keys()

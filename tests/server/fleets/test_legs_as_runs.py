@@ -1,0 +1,341 @@
+"""A fleet hands its legs out as runs, once each, and follows what becomes of them."""
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Any
+from uuid import UUID
+
+import pytest
+from dispatch_office import asked, dispatcher_for, office, visit
+
+from mend.errors import ConflictError, NotFoundError
+from mend.fleet.dispatch.dispatcher import Dispatcher
+from mend.fleet.requests import RequestStatus
+from mend.server.fleets import leg_execution
+from mend.server.fleets.fleet_at_work import FleetAtWork
+from mend.server.fleets.fleet_record import FleetRecord
+from mend.server.fleets.fleets import KIND
+from mend.server.fleets.operator_requests import WayFound
+from mend.server.fleets.place_names import PlaceNames
+from mend.server.fleets.request_refused import RequestRefusedError
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.runtime.clock import WorldTime
+from mend.server.runtime.views import RunStatus
+from mend.server.sites.requests import FleetOptions
+from mend.tasks.definition import TaskTreeDefinition
+from mend.tasks.scene import Place, Pose, Scene
+
+SITE = UUID(int=9)
+PATIENCE_S = 20.0
+SCENE = Scene(
+    name="office",
+    objects={},
+    places={each: Place(pose=Pose(x=10.0 * n, y=0.0, z=0.0)) for n, each in enumerate("abcde")},
+)
+
+
+class FakeSite:
+    """A site whose clock runs as far as it is asked to, and at once."""
+
+    def __init__(self) -> None:
+        self.id = SITE
+        self.world: Any = self
+        self.time = WorldTime()
+        self.changed: Callable[[], None] = lambda: None
+        self.busy: set[str] = set()
+        self.gone: set[str] = set()
+        self.standing: dict[str, tuple[float, float, float]] = {}
+
+    def rests(self, robot: str) -> bool:
+        return robot not in self.busy | self.gone
+
+    def is_connected(self, robot: str) -> bool:
+        return robot not in self.gone
+
+    def whereabouts(self, robot: str) -> tuple[float, float, float] | None:
+        return self.standing.get(robot)
+
+    def let_time_pass(self, until_s: float, rate: float | None) -> bool:  # noqa: ARG002
+        self.time.heard(until_s)
+        asyncio.get_running_loop().call_soon(self.changed)
+        return True
+
+
+@dataclass
+class FakeRun:
+    """A run of which a test says how it ends."""
+
+    id: UUID
+    robot: str
+    behavior: str
+    parameters: dict[str, Any]
+    ended: "asyncio.Future[tuple[str, bool]]"
+
+
+@dataclass
+class FakeRuns:
+    """Implements `mend.server.fleets.runs.Runs`; `refuse` so many beginnings."""
+
+    site: FakeSite
+    refuse: int = 0
+    runs: list[FakeRun] = field(default_factory=list)
+    begun: asyncio.Event = field(default_factory=asyncio.Event)
+
+    async def start_run_of(self, run: UUID, request: Any, tree: TaskTreeDefinition) -> Any:
+        if self.refuse:
+            self.refuse -= 1
+            raise ConflictError("the robot is busy")
+        if not await self.has_run(run):
+            leaf: Any = tree.nodes[0]
+            ended = asyncio.get_running_loop().create_future()
+            (robot,) = request.robots
+            self.site.busy.add(robot)
+            self.runs.append(FakeRun(run, robot, leaf.behavior, leaf.parameters, ended))
+            self.begun.set()
+
+    async def wait_for_end(self, run: UUID) -> Any:
+        of = next(each for each in self.runs if each.id == run)
+        status, done = await asyncio.shield(of.ended)
+        self.site.busy.discard(of.robot)
+        return _View(status, done)
+
+    async def abort(self, run: UUID, author: object = None) -> Any:  # noqa: ARG002
+        next(each for each in self.runs if each.id == run).ended.set_result(("aborted", False))
+
+    async def has_run(self, run: UUID) -> bool:
+        return any(each.id == run for each in self.runs)
+
+    async def nth(self, number: int) -> FakeRun:
+        """The first run that is begun, the second, ..."""
+        async with asyncio.timeout(PATIENCE_S):
+            while len(self.runs) < number:
+                self.begun.clear()
+                await self.begun.wait()
+        return self.runs[number - 1]
+
+
+class _View:
+    def __init__(self, status: str, done: bool) -> None:
+        self.status = RunStatus(status)
+        self.nodes = [self]
+        self.done = done
+        self.result = self
+        self.reason = "nobody came"
+
+
+@dataclass
+class Work:
+    """A fleet at work on an empty journal."""
+
+    site: FakeSite
+    runs: FakeRuns
+    journal: SqliteJournal
+    fleet: FleetAtWork
+
+    async def status(self, name: str) -> RequestStatus:
+        return await self.fleet.read(lambda all_: all_.view(name).status)
+
+    async def until(self, name: str, status: RequestStatus) -> None:
+        async with asyncio.timeout(PATIENCE_S):
+            while await self.status(name) is not status:  # noqa: ASYNC110 - nobody tells of it
+                await asyncio.sleep(0)
+
+
+def _fleet(site: Any, runs: FakeRuns, journal: SqliteJournal, of: Dispatcher) -> FleetAtWork:
+    places, options = PlaceNames(office(), SCENE), FleetOptions()
+    now = datetime(2026, 1, 2, tzinfo=UTC)
+    return FleetAtWork(site, of, places, options, runs, journal, None, lambda: now, {})
+
+
+@asynccontextmanager
+async def working(*starts: str, refuse: int = 0) -> AsyncIterator[Work]:
+    site, journal = FakeSite(), SqliteJournal(":memory:")
+    runs = FakeRuns(site, refuse)
+    fleet = _fleet(site, runs, journal, dispatcher_for(*starts))
+    fleet.start()
+    try:
+        yield Work(site, runs, journal, fleet)
+    finally:
+        await fleet.stop()
+        journal.close()
+
+
+async def test_what_is_asked_for_is_fetched_and_handed_over_by_one_robot() -> None:
+    async with working("a") as work:
+        await work.fleet.submit(asked(), None)
+        fetching = await work.runs.nth(1)
+        assert fetching.behavior == "collect_item"
+        assert fetching.parameters == {"place": "b", "item": "tea"}
+        fetching.ended.set_result(("finished", True))
+        bringing = await work.runs.nth(2)
+        assert bringing.behavior == "hand_over_item"
+        assert bringing.parameters == {"place": "d", "item": "tea"}
+        assert await work.status("tea") is RequestStatus.UNDER_WAY
+        bringing.ended.set_result(("finished", True))
+        await work.until("tea", RequestStatus.DONE)
+        assert len(work.runs.runs) == 2
+
+
+async def test_a_leg_is_in_the_journal_before_its_robot_hears_of_it() -> None:
+    async with working("a") as work:
+        await work.fleet.submit(asked(), None)
+        await work.runs.nth(1)
+        kept = (await work.journal.documents(KIND))[str(SITE)]
+        (leg,) = FleetRecord.model_validate_json(kept).dispatcher.under_way
+        assert (leg.robot, leg.booking, leg.action) == ("r0", "tea", "collect")
+
+
+async def test_after_a_restart_the_same_run_goes_on() -> None:
+    async with working("a") as work:
+        await work.fleet.submit(asked(), None)
+        fetching = await work.runs.nth(1)
+        await work.fleet.stop()
+        kept = (await work.journal.documents(KIND))[str(SITE)]
+        was = FleetRecord.model_validate_json(kept)
+        setting = work.fleet.dispatcher.setting
+        again = Dispatcher.restored(office(), setting, was.dispatcher)
+        work.fleet = _fleet(work.site, work.runs, work.journal, again)
+        work.fleet.start()
+        fetching.ended.set_result(("finished", True))
+        bringing = await work.runs.nth(2)
+        assert bringing.behavior == "hand_over_item"
+
+
+async def test_what_cannot_be_begun_now_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(leg_execution, "TRIES_AGAIN_S", 0.0)
+    async with working("a", refuse=3) as work:
+        await work.fleet.submit(visit(), None)
+        (await work.runs.nth(1)).ended.set_result(("finished", True))
+        await work.until("visit", RequestStatus.DONE)
+
+
+async def test_a_robot_that_is_too_early_waits_at_the_place() -> None:
+    async with working("a") as work:
+        await work.fleet.submit(asked(earliest_s=600.0), None)
+        going = await work.runs.nth(1)
+        assert (going.behavior, going.parameters) == ("go_to", {"place": "b"})
+        assert 500.0 < work.site.time.latest_s < 600.0
+        going.ended.set_result(("finished", True))
+        assert (await work.runs.nth(2)).behavior == "collect_item"
+        assert work.site.time.latest_s >= 600.0
+
+
+async def test_somebody_who_comes_stays_as_long_as_was_asked() -> None:
+    async with working("a") as work:
+        await work.fleet.submit(visit(stay_s=120.0), None)
+        going = await work.runs.nth(1)
+        came_s = max(0.0, work.site.time.latest_s)
+        going.ended.set_result(("finished", True))
+        await work.until("visit", RequestStatus.DONE)
+        assert work.site.time.latest_s >= came_s + 120.0
+
+
+async def test_what_failed_is_tried_again_later_and_fails_with_the_reason() -> None:
+    async with working("a") as work:
+        await work.fleet.submit(visit(), None)
+        for number in (1, 2, 3):
+            (await work.runs.nth(number)).ended.set_result(("failed", False))
+        await work.until("visit", RequestStatus.FAILED)
+        reason = await work.fleet.read(lambda all_: all_.view("visit").reason)
+        assert "nobody came" in (reason or "")
+        assert len(work.runs.runs) == 3
+
+
+async def test_what_is_cancelled_is_broken_off() -> None:
+    async with working("a") as work:
+        await work.fleet.submit(visit(), None)
+        going = await work.runs.nth(1)
+        await work.fleet.cancel("visit", None)
+        await work.until("visit", RequestStatus.CANCELLED)
+        assert going.ended.result() == ("aborted", False)
+
+
+async def test_another_robot_takes_over_from_one_that_is_gone() -> None:
+    async with working("a", "e") as work:
+        await work.fleet.submit(visit(place="b"), None)
+        going = await work.runs.nth(1)
+        assert going.robot == "r0"
+        work.site.gone.add("r0")
+        going.ended.set_result(("failed", False))
+        instead = await work.runs.nth(2)
+        assert instead.robot == "r1"
+        instead.ended.set_result(("finished", True))
+        await work.until("visit", RequestStatus.DONE)
+
+
+async def test_a_robot_that_is_back_works_again_where_it_stands() -> None:
+    async with working("a") as work:
+        await work.fleet.submit(visit(place="b"), None)
+        going = await work.runs.nth(1)
+        work.site.gone.add("r0")
+        going.ended.set_result(("failed", False))
+        await work.until("visit", RequestStatus.WAITING)
+        work.site.gone.clear()
+        work.site.standing["r0"] = (31.0, 0.4, 0.0)
+        work.site.changed()
+        back = await work.runs.nth(2)
+        assert back.robot == "r0"
+        stands = work.fleet.dispatcher.fleet.robots["r0"]
+        assert stands.works
+        back.ended.set_result(("finished", True))
+        await work.until("visit", RequestStatus.DONE)
+
+
+async def test_a_robot_that_is_taken_out_breaks_off_and_another_takes_over() -> None:
+    async with working("a", "e") as work:
+        await work.fleet.submit(visit(place="b"), None)
+        going = await work.runs.nth(1)
+        assert going.robot == "r0"
+        await work.fleet.take_out("r0", "its wheel squeaks", None)
+        assert going.ended.result() == ("aborted", False)
+        instead = await work.runs.nth(2)
+        assert instead.robot == "r1"
+        instead.ended.set_result(("finished", True))
+        await work.until("visit", RequestStatus.DONE)
+        with pytest.raises(ConflictError, match="is out of service already"):
+            await work.fleet.take_out("r0", "its wheel squeaks", None)
+        with pytest.raises(NotFoundError, match="this fleet has no robot 'r7'; it has r0, r1"):
+            await work.fleet.take_out("r7", "its wheel squeaks", None)
+
+
+async def test_a_robot_that_is_out_of_service_works_only_once_it_is_put_back() -> None:
+    async with working("a") as work:
+        await work.fleet.take_out("r0", "its wheel squeaks", None)
+        kept = (await work.journal.documents(KIND))[str(SITE)]
+        assert FleetRecord.model_validate_json(kept).out_of_service == {"r0": "its wheel squeaks"}
+        with pytest.raises(RequestRefusedError, match="no robot works"):
+            await work.fleet.submit(visit(), None)
+        await work.fleet.put_back("r0", None)
+        await work.fleet.submit(visit(), None)
+        (await work.runs.nth(1)).ended.set_result(("finished", True))
+        await work.until("visit", RequestStatus.DONE)
+        with pytest.raises(ConflictError, match="is in service"):
+            await work.fleet.put_back("r0", None)
+
+
+async def test_a_way_that_somebody_found_blocked_keeps_robots_off_it() -> None:
+    async with working("a") as work:
+        await work.fleet.found(WayFound(finding="blocked", between=["b", "c"]), None)
+        with pytest.raises(RequestRefusedError):
+            await work.fleet.submit(visit(place="d", latest_s=200.0), None)
+        await work.fleet.found(WayFound(finding="open", between=["b", "c"]), None)
+        await work.fleet.submit(visit(place="d", latest_s=200.0), None)
+        assert (await work.runs.nth(1)).parameters == {"place": "d"}
+
+
+async def test_a_fault_within_ends_the_leg_and_not_the_fleet(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def broken(*_: object) -> None:
+        raise ZeroDivisionError
+
+    async with working("a") as work:
+        monkeypatch.setattr(work.runs, "start_run_of", broken)
+        await work.fleet.submit(visit(), None)
+        await work.until("visit", RequestStatus.FAILED)
+        reason = await work.fleet.read(lambda all_: all_.view("visit").reason)
+    assert "a fault of Mend's own" in (reason or "")
+    assert "could not be carried out" in caplog.text
