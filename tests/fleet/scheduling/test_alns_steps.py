@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from delivery_problems import corridor, corridor_items, parcel
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from mend.fleet.scheduling.alns.annealing import take_step
@@ -117,9 +117,22 @@ def test_steps_around_doors_are_valid_and_cost_what_they_say(
     apart = problem.travel
     closed = Epoch(0.0, opens_s, apart.distance_m * 3, apart.time_s * 3)
     opened = Epoch(opens_s, float("inf"), apart.distance_m, apart.time_s)
+    around = replace(problem, travel=Travel.through((closed, opened)))
+    # Of a robot that cannot get home in its shift, doing nothing, there is no valid plan.
+    assume(all(_gets_home(around, number) for number in range(len(around.robots))))
     test_every_accepted_step_is_valid_and_costs_what_it_says.hypothesis.inner_test(  # type: ignore[attr-defined]
-        replace(problem, travel=Travel.through((closed, opened))), seed
+        around, seed
     )
+
+
+def _gets_home(problem: Problem, number: int) -> bool:
+    robot = problem.robots[number]
+    if robot.end is None:
+        return True
+    begins_s = robot.shift.earliest_s
+    leaves_s = [begins_s, *(max(begins_s, each.from_s) for each in problem.travel.epochs)]
+    trips = [problem.travel.trip(robot.start, robot.end, each, robot.speed) for each in leaves_s]
+    return any(each.arrival_s <= robot.shift.latest_s for each in trips)
 
 
 @given(problems(), seeds)
