@@ -7,6 +7,7 @@ from typing import Literal
 from uuid import UUID
 
 from console_in_browser import OpenPage
+from office_with_fleet import open_office_with_fleet
 from playwright.async_api import Page, expect
 from two_boxes import BENCH, BOTH
 
@@ -16,7 +17,7 @@ from mend.maps.building.random_building import random_building
 from mend.server.composition import Service
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.runtime.requests import RunRequest
-from mend.server.sites.requests import FleetOptions, SiteRequest
+from mend.server.sites.requests import SiteRequest
 from mend.sim.building.scene import scene_of
 from mend.tasks.intervention import Intervention
 from mend.tasks.scenario import Person
@@ -233,23 +234,6 @@ async def unknown(_: Service, open_page: OpenPage) -> Page:
     )
     await expect(page.get_by_role("heading", name="There is nothing")).to_be_visible()
     return page
-
-
-async def open_office_with_fleet(service: Service, speed: float | Literal["max"] = 1.0) -> UUID:
-    """A site of one floor whose robot takes requests, with somebody who always helps."""
-    scene = scene_of(Building(random_building(7, 1, 6)), "office", 1)
-    await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
-    site = await service.sites.open_site(
-        SiteRequest(
-            scene="office",
-            world="building",
-            speed=speed,
-            seed=3,
-            world_options={"localizer": "exact", "unmapped": 0.0, "shut_doors": 0.0},
-            fleet=FleetOptions(answers="yes"),
-        )
-    )
-    return site.id
 
 
 async def requests(service: Service, open_page: OpenPage) -> Page:

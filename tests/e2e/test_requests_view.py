@@ -2,7 +2,7 @@
 
 import pytest
 from console_in_browser import OpenPage
-from console_situations import open_office_with_fleet
+from office_with_fleet import open_office_with_fleet
 from playwright.async_api import expect
 
 from mend.server.composition import Service

@@ -3,15 +3,12 @@
 import asyncio
 from collections.abc import Callable
 from pathlib import Path
-from typing import Literal
-from uuid import UUID
 
 import pytest
+from office_with_fleet import open_office_with_fleet
 
 from mend.errors import NotFoundError, WrongInputError
 from mend.fleet.requests import DeliverMessage, GoToRoom, RequestStatus, Transport
-from mend.maps.building.building import Building
-from mend.maps.building.random_building import random_building
 from mend.server.client import MendClient
 from mend.server.client_errors import RefusedError
 from mend.server.composition import Service, open_service
@@ -20,7 +17,6 @@ from mend.server.journal.stored_event import read_event
 from mend.server.journal.subscriptions import Record
 from mend.server.settings import Settings
 from mend.server.sites.requests import FleetOptions, SiteRequest
-from mend.sim.building.scene import scene_of
 
 PATIENCE_S = 500.0
 OVER = {"done", "failed", "cancelled", "refused"}
@@ -28,25 +24,6 @@ OVER = {"done", "failed", "cancelled", "refused"}
 
 def settings(folder: Path) -> Settings:
     return Settings(port=0, data_dir=folder, log_level="error", speech_voice="none")
-
-
-async def open_office(
-    service: Service, robots: int = 2, floors: int = 1, speed: float | Literal["max"] = "max"
-) -> UUID:
-    """A site whose robots know where they are, with somebody who always helps."""
-    scene = scene_of(Building(random_building(7, floors, 6)), "office", robots)
-    await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
-    site = await service.sites.open_site(
-        SiteRequest(
-            scene="office",
-            world="building",
-            speed=speed,
-            seed=3,
-            world_options={"localizer": "exact", "unmapped": 0.0, "shut_doors": 0.0},
-            fleet=FleetOptions(answers="yes"),
-        )
-    )
-    return site.id
 
 
 async def events_until(
@@ -88,7 +65,7 @@ async def until_over(service: Service, names: set[str]) -> dict[str, list[str]]:
 @pytest.mark.slow(20)
 async def test_rooms_that_are_asked_for_are_visited_by_all_robots(tmp_path: Path) -> None:
     async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
-        site = await open_office(service)
+        site = await open_office_with_fleet(service, "max", robots=2)
         for number in (1, 3, 5, 6):
             request = GoToRoom(name=f"room{number}", place=f"10{number}")
             _, booked = await service.fleets.submit(site, request, None)
@@ -105,7 +82,7 @@ async def test_a_service_that_stopped_goes_on_with_what_its_robots_were_doing(
     tmp_path: Path,
 ) -> None:
     async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
-        site = await open_office(service)
+        site = await open_office_with_fleet(service, "max", robots=2)
         for number in (4, 6):
             request = GoToRoom(name=f"room{number}", place=f"10{number}")
             await service.fleets.submit(site, request, None)
@@ -124,7 +101,7 @@ async def test_a_service_that_stopped_goes_on_with_what_its_robots_were_doing(
 @pytest.mark.slow(40)
 async def test_things_are_brought_and_messages_told_over_two_floors(tmp_path: Path) -> None:
     async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
-        site = await open_office(service, floors=2)
+        site = await open_office_with_fleet(service, "max", robots=2, floors=2)
         parcel = Transport(name="p", what="the parcel", origin="101", destination="203")
         lunch = DeliverMessage(name="lunch", place="102", message="Lunch is ready.")
         for request in (parcel, lunch):
@@ -144,7 +121,7 @@ async def test_things_are_brought_and_messages_told_over_two_floors(tmp_path: Pa
 async def test_what_is_cancelled_while_a_robot_is_on_its_way_is_broken_off(tmp_path: Path) -> None:
     async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
         # Slow enough that it is on its way for long.
-        site = await open_office(service, robots=1, speed=2.0)
+        site = await open_office_with_fleet(service, 2.0)
         await service.fleets.submit(site, GoToRoom(name="far", place="106"), None)
 
         def drives(events: list[ev.Event]) -> bool:
@@ -167,7 +144,7 @@ async def test_requests_are_made_followed_changed_and_cancelled_over_rest(tmp_pa
         MendClient(service.url) as client,
         asyncio.timeout(PATIENCE_S),
     ):
-        site = await open_office(service, robots=1)
+        site = await open_office_with_fleet(service, "max")
         later = GoToRoom(name="later", place="101", earliest_s=3000.0)
         booked = await client.make_request(later)
         assert (booked.site, booked.status) == (site, "booked")

@@ -1,0 +1,33 @@
+"""An office whose robots take requests, with somebody who does whatever they ask."""
+
+from typing import Literal
+from uuid import UUID
+
+from mend.maps.building.building import Building
+from mend.maps.building.random_building import random_building
+from mend.server.composition import Service
+from mend.server.sites.requests import FleetOptions, SiteRequest
+from mend.sim.building.scene import scene_of
+
+
+async def open_office_with_fleet(
+    service: Service,
+    speed: float | Literal["max"] = 1.0,
+    *,
+    robots: int = 1,
+    floors: int = 1,
+) -> UUID:
+    """Open a site there; its robots know where they are, and no door is shut."""
+    scene = scene_of(Building(random_building(7, floors, 6)), "office", robots)
+    await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
+    site = await service.sites.open_site(
+        SiteRequest(
+            scene="office",
+            world="building",
+            speed=speed,
+            seed=3,
+            world_options={"localizer": "exact", "unmapped": 0.0, "shut_doors": 0.0},
+            fleet=FleetOptions(answers="yes"),
+        )
+    )
+    return site.id
