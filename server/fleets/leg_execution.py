@@ -143,8 +143,9 @@ class LegExecution:
 
     def _end_of(self, run: RunView) -> LegEnd:
         """What a run that has ended says of its leg."""
-        done = all(each.done for each in run.nodes)
-        if run.status is RunStatus.FINISHED and done:
+        # A leaf that somebody had left out counts as done for the run, but nobody has done it.
+        left_out = run.result is None or bool(run.result.missing)
+        if run.status is RunStatus.FINISHED and not left_out:
             return LegEnd(outcome=LegOutcome.DONE)
         if self._broken_off:
             return LegEnd(outcome=LegOutcome.WITHDRAWN, at=self._at())

@@ -100,7 +100,7 @@ class FakeRuns:
         of = next(each for each in self.runs if each.id == run)
         status, done = await asyncio.shield(of.ended)
         self.site.busy.discard(of.robot)
-        return _View(status, done)
+        return _View(status, done, of.behavior)
 
     async def abort(self, run: UUID, author: object = None) -> Any:  # noqa: ARG002
         next(each for each in self.runs if each.id == run).ended.set_result(("aborted", False))
@@ -118,12 +118,11 @@ class FakeRuns:
 
 
 class _View:
-    def __init__(self, status: str, done: bool) -> None:
+    def __init__(self, status: str, done: bool, behavior: str) -> None:
         self.status = RunStatus(status)
-        self.nodes = [self]
-        self.done = done
         self.result = self
         self.reason = "nobody came"
+        self.missing = [] if done else [behavior]
 
 
 @dataclass
@@ -339,3 +338,18 @@ async def test_a_fault_within_ends_the_leg_and_not_the_fleet(
         reason = await work.fleet.read(lambda all_: all_.view("visit").reason)
     assert "a fault of Mend's own" in (reason or "")
     assert "could not be carried out" in caplog.text
+
+
+async def test_what_somebody_had_left_out_is_not_done() -> None:
+    async with working("a") as work:
+        await work.fleet.submit(asked(), None)
+        (await work.runs.nth(1)).ended.set_result(("finished", True))
+        bringing = await work.runs.nth(2)
+        assert bringing.behavior == "hand_over_item"
+        bringing.ended.set_result(("finished", False))
+        # It is tried again later: until then its robot waits at the place.
+        going = await work.runs.nth(3)
+        assert (going.behavior, going.parameters) == ("go_to", {"place": "d"})
+        going.ended.set_result(("finished", True))
+        assert (await work.runs.nth(4)).behavior == "hand_over_item"
+        assert await work.status("tea") is RequestStatus.UNDER_WAY
