@@ -209,7 +209,7 @@ class DialogueEvents:
 
 def _why_put_back(close: Close) -> str:
     if close.reason is CloseReason.GAVE_UP:
-        return "nobody helped"
+        return "no help was seen"
     if close.helped and close.failed:
         return "it has failed after help too often"
     if close.helped:
