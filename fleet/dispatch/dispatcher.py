@@ -23,6 +23,7 @@ from mend.fleet.scheduling.replanning.events import (
     Fetched,
     RobotBack,
     RobotFailed,
+    RobotMoved,
     TimePassed,
     WayOpen,
 )
@@ -181,6 +182,16 @@ class Dispatcher:
         """A robot works again, at a place. Raises `ConflictError`, `NotFoundError`."""
         self._advance(now_s)
         self._state.apply(RobotBack(robot, self.building.find(at)), f"{robot} works again", ())
+        self._state.settle()
+
+    def robot_moved(self, robot: str, at: str, now_s: float) -> None:
+        """A robot that had nothing to do stands at another place now.
+
+        Raises `ConflictError` where it has something to do, `NotFoundError`.
+        """
+        self._advance(now_s)
+        event = RobotMoved(robot, self.building.find(at))
+        self._state.apply(event, f"{robot} has made way", ())
         self._state.settle()
 
     def found(self, found: Found, now_s: float) -> None:

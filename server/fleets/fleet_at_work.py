@@ -1,14 +1,15 @@
 """The fleet of one site at work: it hands out legs as runs, and hears what becomes of them."""
 
 import asyncio
+import logging
 from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from datetime import datetime
 from functools import partial
 from typing import TypeVar
-from uuid import UUID
+from uuid import UUID, uuid4
 
-from mend.errors import ConflictError, NotFoundError
+from mend.errors import ConflictError, NotFoundError, RefusalError
 from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd, LegOutcome
@@ -17,18 +18,22 @@ from mend.server.fleets.fleet_news import FleetNews
 from mend.server.fleets.fleet_record import FleetRecord
 from mend.server.fleets.fleets import KIND
 from mend.server.fleets.leg_execution import LegExecution, LegTurn
-from mend.server.fleets.leg_task import require_doable
+from mend.server.fleets.leg_task import require_doable, way_of, way_request
+from mend.server.fleets.making_way import who_makes_way
 from mend.server.fleets.operator_requests import WayFound
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.fleets.runs import Runs
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Document, Entry, Journal
+from mend.server.runtime.views import RunStatus
 from mend.server.sites.requests import FleetOptions
 from mend.server.sites.site import Site
 from mend.tasks.plugins import load_plugins
 
 T = TypeVar("T")
+
+log = logging.getLogger(__name__)
 
 LOOKS_AGAIN_S = 5.0
 """While a robot waits at the place of its leg, the leg is looked after that often (site's time)."""
@@ -64,6 +69,7 @@ class FleetAtWork:
         self._at_once = asyncio.Lock()
         self._changed = asyncio.Event()
         self._legs: dict[str, tuple[LegExecution, asyncio.Task[None]]] = {}
+        self._making_way: dict[str, asyncio.Task[None]] = {}
         self._behaviors = load_plugins("mend.behaviors")
         self._main: asyncio.Task[None] | None = None
         self._kept: FleetRecord | None = None
@@ -82,7 +88,7 @@ class FleetAtWork:
     async def stop(self) -> None:
         """Stop without ending anything: it goes on from the journal."""
         self._site.changed = lambda: None
-        tasks = [task for _, task in self._legs.values()]
+        tasks = [*(task for _, task in self._legs.values()), *self._making_way.values()]
         if self._main is not None:
             tasks.append(self._main)
         for task in tasks:
@@ -105,6 +111,11 @@ class FleetAtWork:
             for execution, _ in self._legs.values():
                 execution.look_again()
             self._let_time_pass()
+            in_the_way = list(who_makes_way(self.dispatcher, self.places.names))
+        for robot, to in in_the_way:
+            if robot not in self._making_way and self._site.rests(robot):
+                task = asyncio.create_task(self._make_way(robot, to), name=f"{robot} makes way")
+                self._making_way[robot] = task
         for leg in unwanted:
             await self._legs[leg.robot][0].break_off()
         for leg in under_way:
@@ -163,6 +174,24 @@ class FleetAtWork:
             del self._legs[leg.robot]
             await self._keep()
         self._changed.set()
+
+    async def _make_way(self, robot: str, to: str) -> None:
+        """Send a robot with nothing to do elsewhere; where it got to is known then."""
+        run = uuid4()
+        try:
+            request = way_request(self._site.id, robot, self._options)
+            await self._runs.start_run_of(run, request, way_of(self.places.in_scene(to)))
+            view = await self._runs.wait_for_end(run)
+            there = view.status is RunStatus.FINISHED
+            async with self._at_once:
+                self.dispatcher.robot_moved(robot, to if there else self._at(robot), self.now_s)
+                await self._keep()
+            self._changed.set()
+        except RefusalError as error:
+            # Whatever changes next has it tried again.
+            log.info("%s did not make way: %s", robot, error)
+        finally:
+            del self._making_way[robot]
 
     def _end(self, leg: Leg, end: LegEnd) -> None:
         robot, now_s = leg.robot, self.now_s

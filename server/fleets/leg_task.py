@@ -50,8 +50,17 @@ def run_of(site: UUID, leg: Leg, stage: LegStage) -> UUID:
 
 
 def run_request(site: UUID, leg: Leg, options: FleetOptions) -> RunRequest:
-    """A run of one robot of the site."""
-    request = RunRequest(tree=leg.action, site=site, robots=[leg.robot], answers="live")
+    """A run of the leg's robot at the site."""
+    return _request(site, leg.action, leg.robot, options)
+
+
+def way_request(site: UUID, robot: str, options: FleetOptions) -> RunRequest:
+    """A run in which a robot only goes somewhere."""
+    return _request(site, GO_TO, robot, options)
+
+
+def _request(site: UUID, tree: str, robot: str, options: FleetOptions) -> RunRequest:
+    request = RunRequest(tree=tree, site=site, robots=[robot], answers="live")
     if options.answers == "live":
         return request
     person = {"answers": ["yes"] * MOST_ANSWERS, "person": Person(acts=True)}

@@ -52,6 +52,14 @@ class RobotBack:
 
 
 @dataclass(frozen=True, slots=True)
+class RobotMoved:
+    """A robot that had nothing to do is at another place than the plan knows of."""
+
+    robot: str
+    place: str
+
+
+@dataclass(frozen=True, slots=True)
 class WayBlocked:
     """Nobody can pass between two neighbouring places until they hear otherwise."""
 
@@ -143,6 +151,7 @@ Event = (
     | RobotDelayed
     | RobotFailed
     | RobotBack
+    | RobotMoved
     | WayBlocked
     | DoorClosed
     | WayOpen

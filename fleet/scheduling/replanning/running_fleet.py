@@ -24,6 +24,7 @@ from mend.fleet.scheduling.replanning.events import (
     RobotBack,
     RobotDelayed,
     RobotFailed,
+    RobotMoved,
     SetOut,
     StopBegun,
     StopFailed,
@@ -211,6 +212,8 @@ class RunningFleet:
                 return self._fail(event)
             case RobotBack():
                 return self._come_back(self._state.robot_number(event.robot), event.place)
+            case RobotMoved():
+                return self._move(self._state.robot_number(event.robot), event.place)
             case WayBlocked():
                 return self._close(event.between, inf)
             case DoorClosed():
@@ -374,6 +377,13 @@ class RunningFleet:
         robot.works, robot.place = True, state.building.places.index(place)
         robot.free_s = max(state.now_s, robot.robot.shift.earliest_s)
         return self._replan(state.retry(), again=state.moved_by.pop(number, ()))
+
+    def _move(self, number: int, place: str) -> Outcome:
+        state, robot = self._state, self._state.robots[number]
+        if not robot.works or robot.doing is not None or robot.trip is not None:
+            raise EventError(f"robot '{robot.robot.name}' does not stand there with nothing to do")
+        robot.stand_at(state.place_number(place), max(state.now_s, robot.free_s))
+        return self._replan([])
 
     def _close(self, between: tuple[str, str], until_s: float) -> Outcome:
         state, ways = self._state, self._state.known_ways()

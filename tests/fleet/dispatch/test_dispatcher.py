@@ -401,3 +401,14 @@ def test_robots_have_names_of_their_own() -> None:
     twice = setting.model_copy(update={"robots": (setting.robots[0], setting.robots[0])})
     with pytest.raises(WrongInputError, match="a name of its own"):
         Dispatcher(office(), twice)
+
+
+def test_robot_that_made_way_is_sent_from_where_it_stands() -> None:
+    dispatcher = dispatcher_for("a")
+    dispatcher.robot_moved("r0", "e", 5.0)
+    dispatcher.submit(visit(place="d"), 5.0)
+    (leg,) = dispatcher.legs_to_begin(5.0)
+    assert leg.begins_s == pytest.approx(15.0)
+    dispatcher.began(leg, 5.0)
+    with pytest.raises(ConflictError, match="does not stand there with nothing to do"):
+        dispatcher.robot_moved("r0", "a", 6.0)

@@ -353,3 +353,27 @@ async def test_what_somebody_had_left_out_is_not_done() -> None:
         going.ended.set_result(("finished", True))
         assert (await work.runs.nth(4)).behavior == "hand_over_item"
         assert await work.status("tea") is RequestStatus.UNDER_WAY
+
+
+async def test_a_robot_with_nothing_to_do_makes_way_for_one_that_comes() -> None:
+    async with working("b", "e") as work:
+        await work.fleet.submit(visit(place="c"), None)
+        first = await work.runs.nth(1)
+        assert first.robot == "r0"
+        first.ended.set_result(("finished", True))
+        await work.until("visit", RequestStatus.DONE)
+        await work.fleet.take_out("r0", "it is to stay", None)
+        await work.fleet.submit(visit("again", place="c"), None)
+        assert (await work.runs.nth(2)).robot == "r1"
+        await work.fleet.put_back("r0", None)
+        away = await work.runs.nth(3)
+        assert (away.robot, away.behavior, away.parameters) == ("r0", "go_to", {"place": "b"})
+        away.ended.set_result(("finished", True))
+        async with asyncio.timeout(PATIENCE_S):
+            while await work.fleet.read(_place_of_r0) != "f/b":  # noqa: ASYNC110 - as above
+                await asyncio.sleep(0)
+        assert len(work.runs.runs) == 3
+
+
+def _place_of_r0(dispatcher: Dispatcher) -> str:
+    return dispatcher.building.graph.places[dispatcher.fleet.robots["r0"].place].name

@@ -12,6 +12,7 @@ from mend.fleet.scheduling.replanning.events import (
     ItemLost,
     NewItem,
     RobotFailed,
+    RobotMoved,
     SetOut,
     StopBegun,
     StopFailed,
@@ -277,3 +278,19 @@ def test_item_that_may_not_change_robots_does_not() -> None:
     fleet = observed(robots=robots)
     refused = fleet.apply(NewItem(parcel("person", direct=True)), 0.0).refused
     assert "person" in refused
+
+
+def test_who_made_way_is_planned_from_where_it_stands() -> None:
+    fleet = observed(robots=ALONE)
+    happen(fleet, 10.0, RobotMoved("left", "d"))
+    fleet.apply(NewItem(parcel("first", 3, 4)), 20.0)
+    assert fleet.stops()["left"][0].begin_s == pytest.approx(20.0)
+
+
+def test_who_is_under_way_has_not_made_way() -> None:
+    fleet = observed(parcel("first", 1, 4), robots=ALONE)
+    happen(fleet, 5.0, SetOut("left"))
+    with pytest.raises(EventError, match="does not stand there with nothing to do"):
+        fleet.apply(RobotMoved("left", "d"), 6.0)
+    with pytest.raises(EventError, match="there is no place"):
+        observed(robots=ALONE).apply(RobotMoved("left", "z"), 6.0)
