@@ -77,7 +77,11 @@ class LegsAtWork:
             closes = leg.request.is_visit
             what = f"{leg.robot} is done with '{leg.booking}' at {leg.place}"
             self._state.apply(StopMade(leg.robot, closes), what, (), own=leg.booking)
-            self._state.bookings[leg.booking].attempts = 0
+            booking = self._state.bookings[leg.booking]
+            booking.attempts = 0
+            if not (booking.fails or self._state.fleet.items[leg.booking].returns):
+                # It goes as it was asked again.
+                booking.reason = None
         elif self._state.fleet.robots[leg.robot].held and end.outcome is not LegOutcome.DONE:
             self._giving_up.failed(leg, end, at)
         else:

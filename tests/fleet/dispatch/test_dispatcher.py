@@ -412,3 +412,14 @@ def test_robot_that_made_way_is_sent_from_where_it_stands() -> None:
     dispatcher.began(leg, 5.0)
     with pytest.raises(ConflictError, match="does not stand there with nothing to do"):
         dispatcher.robot_moved("r0", "a", 6.0)
+
+
+def test_what_went_wrong_before_is_not_said_of_what_is_done() -> None:
+    dispatcher = dispatcher_for("a")
+    dispatcher.submit(visit(), 0.0)
+    make_leg(dispatcher, 0.0, 20.0, NOBODY)
+    assert "nobody came" in (dispatcher.view("visit").reason or "")
+    again_s = 20.0 + dispatcher.setting.policy.retry_after_s
+    make_leg(dispatcher, again_s, 30.0)
+    assert dispatcher.view("visit").status is RequestStatus.DONE
+    assert dispatcher.view("visit").reason is None
