@@ -7,7 +7,7 @@ missing depth have eaten away.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 from itertools import combinations
 
@@ -41,7 +41,7 @@ _NOISE_SHARE = 3.0
 class Surface:
     """A level patch: its pixels with the rim, its height and what it looks like.
 
-    `color` is the mean BGR of the pixels of its core.
+    `color` is the mean BGR of the pixels of its core. `pieces`: what it was joined of, if it was.
     """
 
     label: int
@@ -50,6 +50,7 @@ class Surface:
     top_z: float
     core_px: int
     color: NDArray[np.float64]
+    pieces: Sequence["Surface"] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,6 +67,15 @@ class Surfaces:
     alike: float
     heights: HeightMap
     table_color: NDArray[np.float64]
+
+    def with_pieces_apart(self, joined: Sequence[Surface]) -> "Surfaces":
+        """The same with each of some surfaces taken for several, as many as it has pieces."""
+        labels, gone = self.labels.copy(), {each.label for each in joined}
+        pieces = [piece for each in joined for piece in each.pieces]
+        for piece in pieces:
+            labels[piece.vs, piece.us] = piece.label
+        kept = [each for each in self.all if each.label not in gone]
+        return replace(self, all=[*kept, *pieces], labels=labels)
 
 
 def find_surfaces(seen: HeightMap) -> Surfaces:
@@ -194,20 +204,22 @@ def _between(
 def _surfaces(
     groups: Sequence[Sequence[int]], pixels: Sequence[tuple[Pixels, Pixels]], cores: _Cores
 ) -> list[Surface]:
-    found = []
-    for group in groups:
-        sizes = cores.sizes[group].astype(np.float64)
-        found.append(
-            Surface(
-                group[0] + 1,
-                np.concatenate([pixels[each][0] for each in group]),
-                np.concatenate([pixels[each][1] for each in group]),
-                float(np.average(cores.tops[group], weights=sizes)),
-                int(sizes.sum()),
-                np.asarray(np.average(cores.colors[group], axis=0, weights=sizes), np.float64),
-            )
-        )
-    return found
+    return [_surface(group, pixels, cores) for group in groups]
+
+
+def _surface(
+    group: Sequence[int], pixels: Sequence[tuple[Pixels, Pixels]], cores: _Cores
+) -> Surface:
+    sizes = cores.sizes[group].astype(np.float64)
+    return Surface(
+        group[0] + 1,
+        np.concatenate([pixels[each][0] for each in group]),
+        np.concatenate([pixels[each][1] for each in group]),
+        float(np.average(cores.tops[group], weights=sizes)),
+        int(sizes.sum()),
+        np.asarray(np.average(cores.colors[group], axis=0, weights=sizes), np.float64),
+        [_surface([each], pixels, cores) for each in group] if len(group) > 1 else (),
+    )
 
 
 def _picture_noise(bgr: NDArray[np.uint8]) -> float:

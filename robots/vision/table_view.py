@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import cv2
 import numpy as np
@@ -19,7 +20,7 @@ from mend.robots.vision.evidence import gather
 from mend.robots.vision.head import HeadSighting
 from mend.robots.vision.height_map import IN_FRONT_M, HeightMap, measure_heights
 from mend.robots.vision.level_rectangle import Rectangle
-from mend.robots.vision.level_surfaces import Pixels, Surface, find_surfaces
+from mend.robots.vision.level_surfaces import Pixels, Surface, Surfaces, find_surfaces
 from mend.robots.vision.match_fit import carried_by, fit_match
 from mend.robots.vision.naming import Match, Namer, Top
 from mend.robots.vision.projection import Points, unproject
@@ -83,14 +84,48 @@ def view_table(
     heights = measure_heights(image, table, own_arm)
     if heights is None:
         return None
-    surfaces = find_surfaces(heights)
-    seen = [(each, gather(each, surfaces)) for each in surfaces.all]
-    tops = [Top(each, evidence, fit_any(evidence)) for each, evidence in seen]
     known = {name: part for name, part in parts.items() if name in model.names}
     namer, segmentation = Namer(known, model), model.segment(image.bgr)
+
+    def understand(surfaces: Surfaces) -> _Understood:
+        name = partial(namer.name, surfaces=surfaces, segmentation=segmentation, wanted=wanted)
+        return _understand(surfaces, name, last_seen, image)
+
+    seen = understand(find_surfaces(heights))
+    if joined := [each.surface for each in seen.unknown if each.surface.pieces]:
+        # What is no part may be several, as high and of one colour, with something before them.
+        apart = understand(seen.surfaces.with_pieces_apart(joined))
+        seen = apart if len(apart.named) > len(seen.named) else seen
+    sightings = {match.part.name: sighting for match, sighting in seen.named}
+    boxes = [box for match, sighting in seen.named for box in _boxes(match, sighting)]
+    strange = [
+        _unknown_box(top, table.height)
+        for top in seen.unknown
+        if not _is_of(top, boxes, seen.surfaces.tolerance_m)
+    ]
+    return TableView(heights, sightings, [*boxes, *strange])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Understood:
+    """What is seen in a picture if it has these surfaces: the parts, and what is no part."""
+
+    surfaces: Surfaces
+    named: Sequence[tuple[Match, HeadSighting]]
+    unknown: Sequence[Top]
+
+
+def _understand(
+    surfaces: Surfaces,
+    name: Callable[..., tuple[list[Match], list[Top]]],
+    last_seen: LastSeen,
+    image: CameraImage,
+) -> _Understood:
+    seen = [(each, gather(each, surfaces)) for each in surfaces.all]
+    tops = [Top(each, evidence, fit_any(evidence)) for each, evidence in seen]
     pieces: list[Top] = []
     while True:
-        matches, unknown = namer.name(tops, surfaces, segmentation, last_seen.spots, wanted)
+        matches, unknown = name(tops, last_seen=last_seen.spots)
         found = []
         for match in matches:
             carried = carried_by(match, matches, surfaces.tolerance_m)
@@ -99,20 +134,11 @@ def view_table(
             found.append((match, _sighting(match, fitted, image)))
         kept, more = _without_pieces(found, last_seen)
         if not more:
-            break
+            return _Understood(surfaces, kept, [*unknown, *pieces])
         # The names that they took may belong to something else that is seen.
         pieces += more
         taken = {id(each.surface) for each in more}
         tops = [each for each in tops if id(each.surface) not in taken]
-    sightings = {match.part.name: sighting for match, sighting in kept}
-    boxes = [box for match, sighting in kept for box in _boxes(match, sighting)]
-    unknown += pieces
-    strange = [
-        _unknown_box(top, table.height)
-        for top in unknown
-        if not _is_of(top, boxes, surfaces.tolerance_m)
-    ]
-    return TableView(heights, sightings, [*boxes, *strange])
 
 
 def _sighting(match: Match, fitted: Fitted, image: CameraImage) -> HeadSighting:

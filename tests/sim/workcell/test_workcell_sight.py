@@ -171,6 +171,35 @@ def test_equal_boxes_in_line_are_two_though_something_stands_on_the_end_of_one()
             assert math.hypot(seen.x - at.x, seen.y - at.y) < 0.005
 
 
+@pytest.mark.parametrize(
+    ("lower", "upper", "pin"),
+    [
+        ((0.5904, -0.5368, 2.525), (0.5856, -0.5357, 0.0), (0.6179, -0.5881, -0.066)),
+        ((0.560, -0.250, 2.0), (0.555, -0.249, 0.2), (0.612, -0.272, 0.3)),
+        ((0.520, 0.120, 1.2), (0.514, 0.118, -0.3), (0.575, 0.132, 0.0)),
+    ],
+)
+def test_what_is_as_high_behind_a_stack_is_no_piece_of_what_carries_it(
+    lower: tuple[float, float, float],
+    upper: tuple[float, float, float],
+    pin: tuple[float, float, float],
+) -> None:
+    """The upper part hides what is between two tops of one colour, which look like one then."""
+    poses = [Pose(x=x, y=y, yaw=yaw) for x, y, yaw in (lower, pin)]
+    blue, brown = (0.08, 0.22, 0.36), (0.15, 0.09, 0.01)
+    on_top = Pose(x=upper[0], y=upper[1], yaw=upper[2], z=0.721)
+    objects = {
+        "lower": SceneObject(color=blue, size=(0.054, 0.034, 0.021), mass_kg=0.07, pose=poses[0]),
+        "upper": SceneObject(color=brown, size=(0.043, 0.025, 0.030), mass_kg=0.09, pose=on_top),
+        "pin": SceneObject(color=blue, size=(0.012, 0.012, 0.020), mass_kg=0.002, pose=poses[1]),
+    }
+    for seed in range(4):
+        view = view_of(Scene(name="behind", objects=objects, places={}), seed)
+        seen = view.sightings["pin"]
+        assert math.hypot(seen.x - pin[0], seen.y - pin[1]) < 0.003
+        assert [each.name for each in view.boxes if each.name is None] == []
+
+
 def test_what_carries_a_part_is_under_its_middle_though_hardly_seen() -> None:
     """Under an equal part, turned by 25 degrees, hardly more than a corner of it shows."""
     upper_z = 0.7 + 0.099
