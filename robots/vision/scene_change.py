@@ -70,9 +70,11 @@ def still_measures(before: CameraImage, now: CameraImage, mask: NDArray[np.uint8
         return True
     if now.depth_m is None:
         return False
-    where = mask > 0
+    left, top, width, height = cv2.boundingRect(mask)
+    patch = slice(top, top + height), slice(left, left + width)
+    where = mask[patch] > 0
     had, has = (
-        int(np.count_nonzero(is_measured(depth_m[where])))
+        int(np.count_nonzero(is_measured(depth_m[patch][where])))
         for depth_m in (before.depth_m, now.depth_m)
     )
     return has >= _STILL_SHARE * had
