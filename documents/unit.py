@@ -12,7 +12,10 @@ _BY_ENDING = {"s": "seconds", "m": "metres", "rad": "radians", "n": "newtons", "
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """Stands in the type of a number: `name` says what it is in, as in `metres`."""
+    """Stands in the type of a number: `name` says what it is in, as in `metres`.
+
+    In that of a list of so many numbers it says what they are.
+    """
 
     name: str
 

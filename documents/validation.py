@@ -65,7 +65,9 @@ def what_is_right(mistakes: Sequence[ErrorDetails], unit: str | None) -> str:
     said, *others = dict.fromkeys(what_it_must_be(each) for each in mistakes)
     for other in others:
         said += f" or {other.removeprefix('must be ')}"
-    if unit is not None and first["type"].startswith(_OF_NUMBERS):
+    if unit is not None and first["type"] == "tuple_type":
+        said += f" of {unit}"
+    elif unit is not None and first["type"].startswith(_OF_NUMBERS):
         said += f" (in {unit})"
     is_told = "input" in first and first["type"] not in _TELLS_ITSELF
     return f"{said}, but it is {_show(first['input'])}" if is_told else said

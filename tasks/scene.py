@@ -18,6 +18,10 @@ Length = Annotated[float, Field(gt=1e-6, le=10.0, allow_inf_nan=False), Unit("me
 Radians = Annotated[float, Field(ge=-6.2832, le=6.2832, allow_inf_nan=False), Unit("radians")]
 Name = Annotated[str, Field(pattern=NAME)]
 Channel = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+LinearRgb = Annotated[
+    tuple[Channel, Channel, Channel], Unit("red, green and blue, each from 0 to 1")
+]
+FullExtents = Annotated[tuple[Length, Length, Length], Unit("lengths along x, y and z in metres")]
 
 QUARTER = math.pi / 2
 _OFF_QUARTER_RAD = 0.01
@@ -54,9 +58,9 @@ class SceneObject(StrictModel):
     grasps (the knob where there is one).
     """
 
-    color: tuple[Channel, Channel, Channel]
-    size: tuple[Length, Length, Length]
-    knob: tuple[Length, Length, Length] | None = None
+    color: LinearRgb
+    size: FullExtents
+    knob: FullExtents | None = None
     pose: Pose
     mass_kg: Annotated[float, Field(gt=0.0, le=50.0)] = 0.12
     needs_help: bool = False

@@ -62,6 +62,11 @@ def test_every_mistake_is_told_with_its_line() -> None:
         ("", "s:1: a scene file is a mapping, but this is empty"),
         ("name: s\nplaces: {}", "s:1: 'objects' is missing"),
         ("a: [", "not valid YAML or JSON"),
+        (
+            SCENE.replace("[1, 0.5, 0]", "red"),
+            "'objects.cup.color' must be a list of red, green and blue, each from 0 to 1, "
+            'but it is "red"',
+        ),
     ],
 )
 def test_what_is_no_scene_is_told_so(text: str, message: str) -> None:
