@@ -86,15 +86,12 @@ def view_table(
         return None
     known = {name: part for name, part in parts.items() if name in model.names}
     namer, segmentation = Namer(known, model), model.segment(image.bgr)
-
-    def understand(surfaces: Surfaces) -> _Understood:
-        name = partial(namer.name, surfaces=surfaces, segmentation=segmentation, wanted=wanted)
-        return _understand(surfaces, name, last_seen, image)
-
-    seen = understand(find_surfaces(heights))
+    name = partial(namer.name, segmentation=segmentation, last_seen=last_seen.spots, wanted=wanted)
+    seen = _understand(find_surfaces(heights), name, last_seen, image)
     if joined := [each.surface for each in seen.unknown if each.surface.pieces]:
         # What is no part may be several, as high and of one colour, with something before them.
-        apart = understand(seen.surfaces.with_pieces_apart(joined))
+        surfaces = seen.surfaces.with_pieces_apart(joined)
+        apart = _understand(surfaces, name, last_seen, image)
         seen = apart if len(apart.named) > len(seen.named) else seen
     sightings = {match.part.name: sighting for match, sighting in seen.named}
     boxes = [box for match, sighting in seen.named for box in _boxes(match, sighting)]
@@ -117,7 +114,7 @@ class _Understood:
 
 def _understand(
     surfaces: Surfaces,
-    name: Callable[..., tuple[list[Match], list[Top]]],
+    name: Callable[[Sequence[Top], Surfaces], tuple[list[Match], list[Top]]],
     last_seen: LastSeen,
     image: CameraImage,
 ) -> _Understood:
@@ -125,7 +122,7 @@ def _understand(
     tops = [Top(each, evidence, fit_any(evidence)) for each, evidence in seen]
     pieces: list[Top] = []
     while True:
-        matches, unknown = name(tops, last_seen=last_seen.spots)
+        matches, unknown = name(tops, surfaces)
         found = []
         for match in matches:
             carried = carried_by(match, matches, surfaces.tolerance_m)
