@@ -30,6 +30,7 @@ from mend.robots.vision.tracking import LastSeen
 from mend.tasks.scene import Table
 
 _COMPLETE_SHARE = 0.8
+_HALF = 0.5
 _SHARED = 0.4
 _APART_M = 0.005
 """Where badly seen boxes share less of their outline, or of their height, each may be right."""
@@ -88,11 +89,12 @@ def view_table(
     namer, segmentation = Namer(known, model), model.segment(image.bgr)
     name = partial(namer.name, segmentation=segmentation, last_seen=last_seen.spots, wanted=wanted)
     seen = _understand(find_surfaces(heights), name, last_seen, image)
-    if joined := [each.surface for each in seen.unknown if each.surface.pieces]:
-        # What is no part may be several, as high and of one colour, with something before them.
-        surfaces = seen.surfaces.with_pieces_apart(joined)
-        apart = _understand(surfaces, name, last_seen, image)
-        seen = apart if len(apart.named) > len(seen.named) else seen
+    for joined in [each for each in seen.surfaces.all if each.pieces]:
+        if len(seen.named) == len(known):
+            break
+        # It may be several, as high and of one colour, with something before them.
+        apart = _understand(seen.surfaces.with_pieces_apart([joined]), name, last_seen, image)
+        seen = apart if apart.half_seen > seen.half_seen else seen
     sightings = {match.part.name: sighting for match, sighting in seen.named}
     boxes = [box for match, sighting in seen.named for box in _boxes(match, sighting)]
     strange = [
@@ -110,6 +112,11 @@ class _Understood:
     surfaces: Surfaces
     named: Sequence[tuple[Match, HeadSighting]]
     unknown: Sequence[Top]
+
+    @property
+    def half_seen(self) -> int:
+        """Of how many parts more than half is seen: no two of them are pieces of one top."""
+        return sum(sighting.shown > _HALF for _, sighting in self.named)
 
 
 def _understand(

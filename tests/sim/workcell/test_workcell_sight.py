@@ -200,6 +200,31 @@ def test_what_is_as_high_behind_a_stack_is_no_piece_of_what_carries_it(
         assert [each.name for each in view.boxes if each.name is None] == []
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_of_equal_boxes_one_is_gone_though_the_other_looks_like_two(seed: int) -> None:
+    """What stands across it cuts the one that is there into two pieces."""
+    rng = np.random.default_rng(9020 + seed)
+    x, y = rng.uniform(0.45, 0.65), rng.uniform(-0.45, 0.15)
+    size = rng.uniform(0.06, 0.18), rng.uniform(0.03, 0.06), rng.uniform(0.02, 0.05)
+    yaw = rng.uniform(-1.5, 1.5)
+    colors = [tuple(rng.uniform(0.05, 0.9, 3).tolist()) for _ in range(2)]
+    off_m = rng.uniform(-0.15, 0.15) * size[0]
+    across = (
+        rng.uniform(0.015, 0.3 * size[0]),
+        size[1] * rng.uniform(0.8, 1.0),
+        rng.uniform(0.02, 0.06),
+    )
+    on_it = Pose(x=x + off_m * math.cos(yaw), y=y + off_m * math.sin(yaw), yaw=yaw, z=0.7 + size[2])
+    there, gone = Pose(x=x, y=y, yaw=yaw), Pose(x=x, y=y + 0.25, yaw=yaw)
+    objects = {
+        "there": SceneObject(color=colors[0], size=size, mass_kg=0.1, pose=there),
+        "gone": SceneObject(color=colors[0], size=size, mass_kg=0.1, pose=gone),
+        "across": SceneObject(color=colors[1], size=across, mass_kg=0.05, pose=on_it),
+    }
+    view = view_of(Scene(name="cut", objects=objects, places={}), 9020 + seed, without="gone")
+    assert len({"there", "gone"} & view.sightings.keys()) == 1
+
+
 def test_what_carries_a_part_is_under_its_middle_though_hardly_seen() -> None:
     """Under an equal part, turned by 25 degrees, hardly more than a corner of it shows."""
     upper_z = 0.7 + 0.099
