@@ -121,7 +121,12 @@ async def test_held_part_moves_in_the_picture(service: Service, open_page: OpenP
 
 async def test_part_is_stolen_by_a_click_on_it(service: Service, open_page: OpenPage) -> None:
     run = await start(service, 2.0)
+    # However long the page takes to draw: a robot that waits for an answer moves no part.
+    await service.runtime.intervene(
+        run, Intervention.model_validate({"act": "steal", "object": "green_leg"})
+    )
     page = await open_page(f"/runs/{run}")
+    await raised_issue(service, run, page)
     canvas = await drawn_canvas(page)
     await page.get_by_role("button", name="Names").click()
     x, y = await place_of_name(page, LATE)
@@ -133,7 +138,6 @@ async def test_part_is_stolen_by_a_click_on_it(service: Service, open_page: Open
     )
     await open_list(page)
     await expect(page.locator(".scene-row", has_text=LATE)).to_contain_text("taken away")
-    await raised_issue(service, run, page)
 
 
 async def test_part_is_stolen_from_the_list_with_keys(
