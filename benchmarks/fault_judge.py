@@ -6,6 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from mend.robots.catalogue import Catalogue
+from mend.robots.vision.presence import is_near
+from mend.robots.vision.seen_box import SeenBox
 from mend.sim.workcell.parts import PartPose
 from mend.sim.workcell.world import WorkcellWorld
 from mend.sim.world import SceneChecker
@@ -28,6 +31,7 @@ class Judge:
 
     def __init__(self, world: WorkcellWorld, scene: Scene) -> None:
         self._world, self._scene = world, scene
+        self._catalogue = Catalogue.from_scene(scene)
         self.alike = {name: self._equals(name) for name in scene.objects}
         self.forget()
 
@@ -67,14 +71,15 @@ class Judge:
 
     def at_place(self, name: str) -> bool:
         """Whether such a part stands where this one belongs."""
-        target = self._scene.places[place_of(name)].pose
+        target = self._catalogue.places[place_of(name)]
         height_m = self._scene.table.height if target.z is None else target.z
+        part = self._catalogue.parts[name]
         for each in self.alike[name]:
-            part = self._world.parts[each]
-            x, y, z = part.pose().position
-            near = math.hypot(x - target.x, y - target.y) <= THERE_M
-            upright = part.pose().tilt_rad <= UPRIGHT_RAD
-            if not part.stolen and near and upright and abs(z - height_m) <= THERE_M:
+            now = self._world.parts[each].pose()
+            x, y, z = now.position
+            box = SeenBox(x, y, now.yaw, part.size, z, None, complete=True)
+            level = now.tilt_rad <= UPRIGHT_RAD and abs(z - height_m) <= THERE_M
+            if not self._world.parts[each].stolen and level and is_near(box, part, target):
                 return True
         return False
 

@@ -52,7 +52,7 @@ class Presence(StrEnum):
 
 def is_at(sighting: HeadSighting, part: Part, target: Location, target_z: float) -> bool:
     """Whether a part rests where it is to be, with its bottom at `target_z`."""
-    near = _is_near(sighting, part, target)
+    near = is_near(sighting, part, target)
     return near and abs(sighting.z - target_z) <= AT_PLACE_HEIGHT_M
 
 
@@ -131,11 +131,12 @@ def top_px(image: CameraImage, room: SeenBox) -> NDArray[np.bool_]:
 
 
 def _stands_at(box: SeenBox, part: Part, target: Location, bottom_z: float) -> bool:
-    near = _is_near(box, part, target)
+    near = is_near(box, part, target)
     return near and abs(box.bottom_z - bottom_z) <= AT_PLACE_HEIGHT_M
 
 
-def _is_near(seen: HeadSighting | SeenBox, part: Part, target: Location) -> bool:
+def is_near(seen: HeadSighting | SeenBox, part: Part, target: Location) -> bool:
+    """Whether a part is at its place, seen from above."""
     off_m = off_place_m(seen, part, target)
     turn_shows = seen.complete and (part.off_square_m >= _SQUARE_M or off_m > _TURN_SHOWS_M)
     turned = turn_shows and turned_rad(seen, part, target) > AT_PLACE_RAD

@@ -1,5 +1,6 @@
 """The judge of faults goes by where things are in the world."""
 
+import math
 from collections.abc import Iterator
 
 import pytest
@@ -62,6 +63,14 @@ def test_an_equal_part_at_the_place_will_do_and_another_is_in_the_way(
     assert not judge.is_true("blocked", "part_1")
     move_to_place(world, "part_3", place_of("part_2"))
     assert judge.is_true("blocked", "part_2")
+
+
+def test_what_is_turned_too_far_is_not_at_its_place(world: WorkcellWorld, judge: Judge) -> None:
+    at = SCENE.places["place_1"].pose
+    for turned, is_there in ((math.radians(10), True), (math.radians(40), False), (math.pi, True)):
+        to = at.model_copy(update={"yaw": turned})
+        assert not world.intervene(Intervention(act=Act.MOVE, object="part_1", to=to))
+        assert judge.at_place("part_1") is is_there, f"turned by {turned:.2f} rad"
 
 
 def test_what_is_stolen_is_missing_and_out_of_reach(world: WorkcellWorld, judge: Judge) -> None:

@@ -10,7 +10,7 @@ from playwright.async_api import Page, WebSocket
 PATIENCE_S = 60.0
 UTTERANCE_S = 12.0
 """Long after the words must have been heard: said again, they would answer the next question."""
-TRIES = 4
+TRIES = 8
 HARMLESS = (None, "help", "repeat")
 
 
