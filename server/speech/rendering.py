@@ -18,6 +18,9 @@ MAX_KEPT_BYTES = 32 * 1024 * 1024
 
 AT_ONCE = 2
 MAX_WAITING = 32
+LATER_S = 0.05
+"""A prompt is rendered so long after it was published: making a process keeps the loop busy for
+milliseconds, in which the robot is to hear what was decided."""
 
 
 class SpokenTexts:
@@ -80,6 +83,7 @@ async def render_prompts(texts: SpokenTexts, journal: Journal) -> None:
                 await _render_all(texts, FIXED.values())
                 async for record in subscription:
                     if '"type":"prompt"' in record.text:
+                        await asyncio.sleep(LATER_S)
                         await _render_prompt(texts, record.text)
             except (SubscriptionOverflowError, PrunedEventsError):
                 # Only a head start is lost: what is asked for is rendered then.

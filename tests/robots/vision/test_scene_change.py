@@ -45,6 +45,13 @@ def test_what_moved_or_went_is_a_change(box: tuple[int, int] | None) -> None:
     assert shows_change(picture(0), picture(1, box=box))
 
 
+@pytest.mark.parametrize("corner", [(0, 0), (150, 0), (0, 110), (150, 110)])
+def test_what_is_gone_at_the_pictures_rim_is_a_change(corner: tuple[int, int]) -> None:
+    stood = [picture(seed, box=corner) for seed in (0, 1)]
+    assert not shows_change(*stood)
+    assert shows_change(stood[0], picture(2, box=None))
+
+
 def test_what_has_the_tables_colour_is_seen_by_its_depth() -> None:
     grey = [replace(each, bgr=np.full_like(each.bgr, 150)) for each in (picture(0), picture(1))]
     gone = replace(picture(2, box=None), bgr=grey[0].bgr)
