@@ -27,10 +27,14 @@ _BEHIND_M = 0.2
 
 @dataclass(frozen=True, slots=True)
 class Barrier:
-    """What leaves a base no way on, so far from its rim; `door` if its map has one there."""
+    """What leaves a base no way on, so far from its rim; `door` if its map has one there.
+
+    `between`: the neighbouring places of its map between which that is, where it is on a lane.
+    """
 
     away_m: float
     door: str | None
+    between: tuple[str, str] | None = None
 
 
 class Base(Effector[BaseBody]):
@@ -125,7 +129,11 @@ class Base(Effector[BaseBody]):
         away_m = math.dist(met, (here.x, here.y))
         share = 1.0 + _BEHIND_M / max(away_m, 1e-6)
         beyond = here.x + share * (met[0] - here.x), here.y + share * (met[1] - here.y)
-        return Barrier(max(0.0, away_m - self.body.radius_m), self.ways.door_at(here, beyond))
+        return Barrier(
+            away_m=max(0.0, away_m - self.body.radius_m),
+            door=self.ways.door_at(here, beyond),
+            between=self.ways.lane_at(here, met),
+        )
 
     def sees_out(self) -> bool:
         """Whether it sees farther than the walls of a cabin in which it would be."""

@@ -21,6 +21,8 @@ from mend.tasks.frames import Frame
 Point = tuple[float, float]
 
 _AROUND_M, _EVERY_M = 6.0, 0.15
+_ON_LANE_M = 0.6
+"""Who is farther from a lane is not on it."""
 _THROUGH_CABIN_S = 1e6
 """No way leads through a cabin where there is any other."""
 
@@ -128,6 +130,21 @@ class FloorWays:
             ):
                 return elevator
         return None
+
+    def lane_at(self, here: BasePose, ahead: Point) -> tuple[str, str] | None:
+        """The ends of the lane that a pose and a point ahead are on, the one behind first."""
+        graph = self._graphs[self._floor(here)]
+        start, goal = self._on_map(here), self._frame.to_scene(*ahead)
+        nearest_m, found = _ON_LANE_M, None
+        for way in graph.ways:
+            a, b = (graph.places[graph.index(each)] for each in (way.a, way.b))
+            ends = (a.x_m, a.y_m), (b.x_m, b.y_m)
+            lane = np.array([[*ends[0], *ends[1]]])
+            off_m = max(clearance_m(each, each, lane) for each in (start, goal))
+            if off_m < nearest_m:
+                along = math.dist(ends[0], start) - math.dist(ends[0], goal)
+                nearest_m, found = off_m, (way.a, way.b) if along < 0.0 else (way.b, way.a)
+        return found
 
     # --- Within -------------------------------------------------------------------------------
 

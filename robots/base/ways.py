@@ -60,6 +60,13 @@ class Ways(Protocol):
         """The door between a pose and a point ahead; None where there is none."""
         ...
 
+    def lane_at(self, here: BasePose, ahead: tuple[float, float]) -> tuple[str, str] | None:
+        """The neighbouring places between which a pose and a point ahead are, the one behind first.
+
+        None where both are on no one lane.
+        """
+        ...
+
 
 class StraightWays:
     """The way of who knows of no walls: straight to the goal."""
@@ -86,4 +93,8 @@ class StraightWays:
 
     def door_at(self, here: BasePose, ahead: tuple[float, float]) -> str | None:  # noqa: ARG002
         """None: it knows of no doors."""
+        return None
+
+    def lane_at(self, here: BasePose, ahead: tuple[float, float]) -> tuple[str, str] | None:  # noqa: ARG002
+        """None: it knows of no lanes."""
         return None

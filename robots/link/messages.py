@@ -130,6 +130,7 @@ class Detection(Message):
     that of the issue, from a monitor that weighs several cues; one that goes by what is plainly
     seen, or not seen, gives none. `explanation` is a clause that people are told: what the robot
     sensed. `guesses`: where a robot may be that is lost, likeliest first (`at F1-101`).
+    `between`: the neighbouring places between which a way is barred, the one it came from first.
     """
 
     camera: Word
@@ -143,6 +144,7 @@ class Detection(Message):
     probability: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
     explanation: Sentence = ""
     guesses: Annotated[list[Word], Field(max_length=MOST_GUESSES)] = []
+    between: Annotated[list[Word], Field(max_length=2)] = []
 
 
 LASER = "laser"

@@ -149,7 +149,7 @@ def _what(event: ev.Event) -> str | None:
             return f"opened a site with '{scene}' in '{world}'"
         case ev.SiteClosed(site=site):
             return f"closed the site {site}"
-        case ev.FleetTold(told=told):
+        case ev.FleetTold(told=told, finder=None):
             return told
         case ev.RequestChanged(author=ev.Author(), request=request, status=status):
             return f"{_ASKED.get(status, 'asked for')} '{request}'"

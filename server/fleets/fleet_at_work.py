@@ -23,6 +23,7 @@ from mend.server.fleets.making_way import who_makes_way
 from mend.server.fleets.operator_requests import WayFound
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
+from mend.server.fleets.robot_findings import finding_of, is_led_round, issues_raised
 from mend.server.fleets.runs import Runs
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Document, Entry, Journal
@@ -72,6 +73,9 @@ class FleetAtWork:
         self._making_way: dict[str, asyncio.Task[None]] = {}
         self._behaviors = load_plugins("mend.behaviors")
         self._main: asyncio.Task[None] | None = None
+        self._hears: asyncio.Task[None] | None = None
+        self._barred: dict[str, Found] = {}
+        """What robots have found on the way to the place of the leg that they are on."""
         self._kept: FleetRecord | None = None
         self._noted: list[ev.Event] = []
         self.out_of_service = dict(out_of_service)
@@ -84,13 +88,13 @@ class FleetAtWork:
         self._site.changed = self._changed.set
         self._changed.set()
         self._main = asyncio.create_task(self._work(), name=f"fleet of {self._site.id}")
+        self._hears = asyncio.create_task(self._hear(), name=f"findings at {self._site.id}")
 
     async def stop(self) -> None:
         """Stop without ending anything: it goes on from the journal."""
         self._site.changed = lambda: None
         tasks = [*(task for _, task in self._legs.values()), *self._making_way.values()]
-        if self._main is not None:
-            tasks.append(self._main)
+        tasks += [each for each in (self._main, self._hears) if each is not None]
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
@@ -175,6 +179,48 @@ class FleetAtWork:
             await self._keep()
         self._changed.set()
 
+    async def _hear(self) -> None:
+        """Have plans follow what robots find on their ways."""
+        hearing = Endless(f"what robots find at site {self._site.id}")
+        async for raised in issues_raised(self._journal):
+            if raised.robot in self._legs and raised.run == self._site.run_of(raised.robot):
+                with hearing.one_pass():
+                    await self._robot_found(raised)
+
+    async def _robot_found(self, raised: ev.IssueRaised) -> None:
+        async with self._told():
+            legs = self.dispatcher.legs_under_way()
+            leg = next((each for each in legs if each.robot == raised.robot), None)
+            found = None if leg is None else finding_of(raised, leg)
+            if leg is None or found is None:
+                return
+            closed, graph = self.dispatcher.closed_until_s(), self.dispatcher.building.graph
+            if not is_led_round(graph, closed, found, leg.place):
+                return
+            try:
+                await asyncio.to_thread(self.dispatcher.found, found, self.now_s)
+                self._barred[raised.robot] = found
+                self._note_found(found)
+            except RefusalError as error:
+                log.info("what %s found of its way changes no plan: %s", raised.robot, error)
+
+    def _got_through(self, leg: Leg) -> None:
+        """A robot has come to its place all the same: what barred its way has gone."""
+        found = self._barred.pop(leg.robot, None)
+        if found is None or self._at(leg.robot) != leg.place:
+            return
+        if frozenset(found.between) in self.dispatcher.closed_until_s():
+            opened = Found(finding=Finding.OPEN, between=found.between, by=leg.robot)
+            self.dispatcher.found(opened, self.now_s)
+            self._note_found(opened)
+
+    def _note_found(self, found: Found) -> None:
+        """It is told even where it changes nobody's plan."""
+        a, b = found.between
+        finding = found.finding.replace("_", " ")
+        told = f"found of the way between {a} and {b}: {finding}"
+        self._noted.append(self._news.told(told, None, found.by))
+
     async def _make_way(self, robot: str, to: str) -> None:
         """Send a robot with nothing to do elsewhere; where it got to is known then."""
         run = uuid4()
@@ -198,6 +244,9 @@ class FleetAtWork:
         done = end.outcome is LegOutcome.DONE
         gone = None if self._site.is_connected(robot) else end.reason or "it is gone"
         why = self.out_of_service.get(robot, None if done else gone)
+        if done:
+            self._got_through(leg)
+        self._barred.pop(robot, None)
         if done or why is None:
             try:
                 self.dispatcher.ended(leg, end, now_s)

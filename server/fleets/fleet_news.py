@@ -33,14 +33,15 @@ class FleetNews:
         self._changes = max((each.number for each in changes), default=self._changes)
         return events
 
-    def told(self, told: str, author: ev.Author | None) -> ev.FleetTold:
-        """What an operator has told the fleet."""
+    def told(self, told: str, author: ev.Author | None, finder: str | None = None) -> ev.FleetTold:
+        """What an operator, or a robot, has told the fleet."""
         return ev.FleetTold(
             wall_time=self._utc_now(),
             site=self._site,
             at_s=self._dispatcher.now_s,
             told=told,
             author=author,
+            finder=finder,
         )
 
     def _request(self, view: RequestView, author: ev.Author | None) -> ev.RequestChanged:

@@ -699,11 +699,15 @@ class PlanChanged(FleetEvent):
 
 
 class FleetTold(FleetEvent):
-    """An operator told a fleet something: what that was, as `took r0 out of service: a squeak`."""
+    """An operator told a fleet something: what that was, as `took r0 out of service: a squeak`.
+
+    `finder`: the robot, where one found it.
+    """
 
     type: Literal["fleet_told"] = "fleet_told"
     told: str
     author: Author | None = None
+    finder: str | None = None
 
 
 AnyEvent = Annotated[

@@ -36,6 +36,7 @@ describe("a detection on a picture", () => {
     probability: null,
     explanation: "",
     guesses: [],
+    between: [],
   };
 
   it("is scaled to the picture, which may be an enlarged one", () => {

@@ -44,4 +44,8 @@ class WayBlocked(BaseMonitor[Patience]):
         if told_otherwise or view.waited_s < self.settings.patience_s:
             return None
         standing = f"something has stood {view.in_the_way_m:.1f} m in front of me"
-        return Detection(camera=LASER, explanation=f"{standing} for {view.waited_s:.0f} s")
+        return Detection(
+            camera=LASER,
+            explanation=f"{standing} for {view.waited_s:.0f} s",
+            between=list(view.between or ()),
+        )

@@ -29,4 +29,8 @@ class DoorClosed(BaseMonitor[DoorPatience]):
     def check(self, view: BaseView) -> Detection | None:
         if view.door is None or view.waited_s < self.settings.patience_s:
             return None
-        return Detection(camera=LASER, explanation=f"the door '{view.door}' is shut")
+        return Detection(
+            camera=LASER,
+            explanation=f"the door '{view.door}' is shut",
+            between=list(view.between or ()),
+        )

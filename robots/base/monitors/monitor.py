@@ -63,7 +63,8 @@ class BaseView(MonitorView):
     why it knows no way to the goal. `elevator`: what it waits for, if that is one. `lost_s`: how
     long it has not known where it is; `guesses` says where it may be then, likeliest first (`at
     F1-101`). `standing`: what it waits for people to do. `lacks`: what it is to hand over and was
-    not given; `missing_kg`: how much less there is in its basket than it was given.
+    not given; `missing_kg`: how much less there is in its basket than it was given. `between`: the
+    neighbouring places between which is what leaves it no way on.
     """
 
     pose: BasePose
@@ -81,6 +82,7 @@ class BaseView(MonitorView):
     lacks: str | None = None
     missing_kg: float = 0.0
     power: Power = Power()
+    between: tuple[str, str] | None = None
 
 
 class BaseMonitor(Monitor[P, BaseView]):

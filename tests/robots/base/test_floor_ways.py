@@ -53,6 +53,25 @@ def test_a_door_on_the_way_has_its_name() -> None:
         assert ways.door_at(BasePose(x, y - 0.5, 0.0), (x, y - 0.1)) is None
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_who_is_on_a_lane_knows_its_ends_the_one_behind_first(seed: int) -> None:
+    building = Building(random_building(seed, 2, 8))
+    frame = Frame(3.0, -1.0, quarters=seed)
+    ways = FloorWays(building, frame, 1.0, 0.3)
+    for name, floor in building.floors.items():
+        for lane in floor.lanes:
+            a, b = (floor.places[each] for each in lane.between)
+            near, far = (
+                frame.to_robot(a.x + share * (b.x - a.x), a.y + share * (b.y - a.y))
+                for share in (0.45, 0.55)
+            )
+            ends = tuple(f"{name}/{each}" for each in lane.between)
+            assert ways.lane_at(BasePose(*near, 0.0, floor.height), far) == ends
+            assert ways.lane_at(BasePose(*far, 0.0, floor.height), near) == ends[::-1]
+        off = BasePose(*frame.to_robot(-500.0, 0.0), 0.0, floor.height)
+        assert ways.lane_at(off, (off.x + 0.5, off.y)) is None
+
+
 def test_what_is_on_no_floor_is_said() -> None:
     building = Building(random_building(3, 2, 4))
     ways = FloorWays(building, Frame(), 1.0, 0.3)

@@ -48,9 +48,13 @@ class FakeSite:
         self.busy: set[str] = set()
         self.gone: set[str] = set()
         self.standing: dict[str, tuple[float, float, float]] = {}
+        self.runs: dict[str, UUID] = {}
 
     def rests(self, robot: str) -> bool:
         return robot not in self.busy | self.gone
+
+    def run_of(self, robot: str) -> UUID | None:
+        return self.runs.get(robot)
 
     def is_connected(self, robot: str) -> bool:
         return robot not in self.gone

@@ -1,0 +1,126 @@
+"""What robots find on their ways changes the plan where another way leads to the place."""
+
+import asyncio
+from collections.abc import Callable
+from datetime import UTC, datetime
+from uuid import UUID
+
+import pytest
+from dispatch_office import fleet_of, visit
+from test_legs_as_runs import SCENE, FakeRun, FakeRuns, FakeSite
+
+from mend.fleet.dispatch.dispatcher import Dispatcher
+from mend.fleet.dispatch.leg import Finding, Found
+from mend.fleet.requests import RequestStatus
+from mend.maps.building.building import Building, BuildingDocument, Floor, FloorPlace, Lane
+from mend.maps.navigation import NavigationGraph, Place, Way
+from mend.robots.link.messages import LASER, Detection
+from mend.server.access.deeds import deed_of
+from mend.server.fleets.fleet_at_work import FleetAtWork
+from mend.server.fleets.place_names import PlaceNames
+from mend.server.fleets.robot_findings import is_led_round
+from mend.server.journal import events as ev
+from mend.server.journal.journal import Entry
+from mend.server.journal.sqlite import SqliteJournal
+from mend.server.sites.requests import FleetOptions
+
+NOW = datetime(2026, 1, 2, tzinfo=UTC)
+BC = frozenset(("f/b", "f/c"))
+ROW = ("ab", "bc", "cd", "de")
+RING = (*ROW, "ea")
+
+
+class Work:
+    """A fleet of one robot at `a`, in rooms with such lanes between them."""
+
+    def __init__(self, lanes: tuple[str, ...]) -> None:
+        places = {name: FloorPlace(x=10.0 * n, y=0.0) for n, name in enumerate("abcde")}
+        floor = Floor(places=places, lanes=tuple(Lane(between=(a, b)) for a, b in lanes))
+        building = Building(BuildingDocument(building="office", floors={"f": floor}))
+        self.site, self.journal = FakeSite(), SqliteJournal(":memory:")
+        self.runs = FakeRuns(self.site)
+        self.dispatcher = Dispatcher(building, fleet_of("a"))
+        names, options = PlaceNames(building, SCENE), FleetOptions()
+        self.fleet = FleetAtWork(
+            self.site, self.dispatcher, names, options, self.runs, self.journal, None, _now, {}
+        )
+
+    async def __aenter__(self) -> "Work":
+        self.fleet.start()
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.fleet.stop()
+        self.journal.close()
+
+    async def raised(self, run: FakeRun, issue: str, *between: str) -> None:
+        self.site.runs[run.robot] = run.id
+        seen = Detection(camera=LASER, explanation="it is barred", between=list(between))
+        event = ev.IssueRaised(
+            time=1.0,
+            wall_time=NOW,
+            run=run.id,
+            node="/0",
+            name="go",
+            robot=run.robot,
+            issue=issue,
+            object=None,
+            place="c",
+            execution=UUID(int=2),
+            step=0,
+            interrupts=True,
+            detection=seen,
+        )
+        await self.journal.append(Entry(events=[event]))
+
+    async def events(self) -> list[ev.Event]:
+        return await self.journal.read(0, 1000)
+
+    async def until(self, comes: Callable[[Dispatcher], bool]) -> None:
+        async with asyncio.timeout(20.0):
+            while not await self.fleet.read(comes):  # noqa: ASYNC110 - nobody tells of it
+                await asyncio.sleep(0)
+
+
+def _now() -> datetime:
+    return NOW
+
+
+@pytest.mark.parametrize(
+    ("issue", "words"), [("blocked", "blocked"), ("door_closed", "door closed")]
+)
+async def test_what_a_robot_finds_counts_until_it_gets_through(issue: str, words: str) -> None:
+    async with Work(RING) as work:
+        await work.fleet.submit(visit(place="c"), None)
+        going = await work.runs.nth(1)
+        await work.raised(going, issue, "f/b", "f/c")
+        await work.until(lambda all_: BC in all_.closed_until_s())
+        work.site.standing["r0"] = (20.0, 0.0, 0.0)
+        last = work.runs.runs[-1]
+        last.ended.set_result(("finished", True))
+        await work.until(lambda all_: all_.view("visit").status is RequestStatus.DONE)
+        assert not work.dispatcher.closed_until_s()
+        told = [each for each in await work.events() if isinstance(each, ev.FleetTold)]
+        way = "found of the way between f/b and f/c"
+        assert [each.told for each in told] == [f"{way}: {words}", f"{way}: open"]
+        assert [each.finder for each in told] == ["r0", "r0"]
+        assert [deed_of(each) for each in told] == [None, None]
+
+
+async def test_where_no_other_way_leads_people_help_and_the_plan_stays() -> None:
+    async with Work(ROW) as work:
+        await work.fleet.submit(visit(place="c"), None)
+        going = await work.runs.nth(1)
+        await work.raised(going, "blocked", "f/b", "f/c")
+        # What comes after it has been heard too says that this one was.
+        await work.raised(going, "door_closed", "f/d", "f/e")
+        await work.until(lambda all_: bool(all_.closed_until_s()))
+        assert BC not in work.dispatcher.closed_until_s()
+
+
+@pytest.mark.parametrize(("one_way", "led"), [(False, True), (True, False)])
+def test_a_way_that_leads_only_back_leads_round_nothing(one_way: bool, led: bool) -> None:
+    places = [Place(name, float(n), 0.0) for n, name in enumerate("abc")]
+    ways = [Way("a", "b"), Way("b", "c"), Way("c", "a", one_way=one_way)]
+    found = Found(finding=Finding.BLOCKED, between=("b", "c"), by="r0")
+    assert is_led_round(NavigationGraph(places, ways), (), found, "c") is led
