@@ -206,7 +206,9 @@ class Transcript:
         | ev.SiteClosed
         | ev.RequestChanged
         | ev.PlanChanged
-        | ev.FleetTold,
+        | ev.FleetTold
+        | ev.LegBegun
+        | ev.LegEnded,
     ) -> list[Line]:
         return []  # It belongs to no run.
 

@@ -133,7 +133,9 @@ class FleetAtWork:
                 self.dispatcher.robot_back(robot, self._at(robot), now_s)
         unwanted = self.dispatcher.legs_to_withdraw(now_s)
         while due := [e for e in self.dispatcher.legs_to_begin(now_s) if self._site.rests(e.robot)]:
+            start = self._at(due[0].robot)
             self.dispatcher.began(due[0], now_s)
+            self._noted.append(self._news.begun(due[0], start))
         return unwanted
 
     @property
@@ -219,7 +221,7 @@ class FleetAtWork:
         a, b = found.between
         finding = found.finding.replace("_", " ")
         told = f"found of the way between {a} and {b}: {finding}"
-        self._noted.append(self._news.told(told, None, found.by))
+        self._noted.append(self._news.told(told, finder=found.by))
 
     async def _make_way(self, robot: str, to: str) -> None:
         """Send a robot with nothing to do elsewhere; where it got to is known then."""
@@ -254,9 +256,11 @@ class FleetAtWork:
                 # What is said to be done cannot have been.
                 refused = LegEnd(outcome=LegOutcome.FAILED, reason=str(error)[:500], at=end.at)
                 self.dispatcher.ended(leg, refused, now_s)
+                end = refused
         if why is not None:
             # Others fetch what it has, and do what it was to do.
             self.dispatcher.robot_failed(robot, end.at, why, now_s)
+        self._noted.append(self._news.ended(leg, end))
 
     def _at(self, robot: str) -> str:
         """The place that a robot is nearest to, as far as is known."""
@@ -321,7 +325,7 @@ class FleetAtWork:
             if robot in self.out_of_service:
                 raise ConflictError(f"robot '{robot}' is out of service already")
             self.out_of_service[robot] = reason
-            self._note(f"took {robot} out of service: {reason}", author)
+            self._note(f"took {robot} out of service: {reason}", author, robot, in_service=False)
             leg = next((e for e in self.dispatcher.legs_under_way() if e.robot == robot), None)
             if leg is None and self.dispatcher.fleet.robots[robot].works:
                 self.dispatcher.robot_failed(robot, self._at(robot), reason, self.now_s)
@@ -337,11 +341,17 @@ class FleetAtWork:
             self._require_robot(robot)
             if self.out_of_service.pop(robot, None) is None:
                 raise ConflictError(f"robot '{robot}' is in service")
-            self._note(f"put {robot} back in service", author)
+            self._note(f"put {robot} back in service", author, robot, in_service=True)
 
-    def _note(self, told: str, author: ev.Author | None) -> None:
+    def _note(
+        self,
+        told: str,
+        author: ev.Author | None,
+        robot: str | None = None,
+        in_service: bool | None = None,
+    ) -> None:
         """Something an operator has told, to be journaled with what comes of it."""
-        self._noted.append(self._news.told(told, author))
+        self._noted.append(self._news.told(told, author, robot=robot, in_service=in_service))
 
     def _require_robot(self, robot: str) -> None:
         if robot not in self.dispatcher.fleet.robots:

@@ -6,6 +6,7 @@ from uuid import UUID
 
 from mend.fleet.dispatch.booking import PlanChange, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
+from mend.fleet.dispatch.leg import Leg, LegEnd
 from mend.server.journal import events as ev
 
 
@@ -33,8 +34,19 @@ class FleetNews:
         self._changes = max((each.number for each in changes), default=self._changes)
         return events
 
-    def told(self, told: str, author: ev.Author | None, finder: str | None = None) -> ev.FleetTold:
-        """What an operator, or a robot, has told the fleet."""
+    def told(
+        self,
+        told: str,
+        author: ev.Author | None = None,
+        *,
+        finder: str | None = None,
+        robot: str | None = None,
+        in_service: bool | None = None,
+    ) -> ev.FleetTold:
+        """What an operator, or the robot `finder`, has told.
+
+        `robot`: who is `in_service` now, or no more.
+        """
         return ev.FleetTold(
             wall_time=self._utc_now(),
             site=self._site,
@@ -42,6 +54,38 @@ class FleetNews:
             told=told,
             author=author,
             finder=finder,
+            robot=robot,
+            in_service=in_service,
+        )
+
+    def begun(self, leg: Leg, start: str) -> ev.LegBegun:
+        """A robot that stands at `start` is sent to do a leg."""
+        return ev.LegBegun(
+            wall_time=self._utc_now(),
+            site=self._site,
+            at_s=self._dispatcher.now_s,
+            robot=leg.robot,
+            number=leg.number,
+            booking=leg.booking,
+            action=leg.action,
+            place=leg.place,
+            start=start,
+        )
+
+    def ended(self, leg: Leg, end: LegEnd) -> ev.LegEnded:
+        """What became of a leg."""
+        return ev.LegEnded(
+            wall_time=self._utc_now(),
+            site=self._site,
+            at_s=self._dispatcher.now_s,
+            robot=leg.robot,
+            number=leg.number,
+            booking=leg.booking,
+            action=leg.action,
+            place=leg.place,
+            outcome=end.outcome,
+            reason=end.reason,
+            at=end.at or leg.place,
         )
 
     def _request(self, view: RequestView, author: ev.Author | None) -> ev.RequestChanged:

@@ -701,13 +701,42 @@ class PlanChanged(FleetEvent):
 class FleetTold(FleetEvent):
     """An operator told a fleet something: what that was, as `took r0 out of service: a squeak`.
 
-    `finder`: the robot, where one found it.
+    `finder`: the robot, where one found it. `robot`, `in_service`: which one works no more, or
+    again; None for anything else, and in the journals of an older Mend.
     """
 
     type: Literal["fleet_told"] = "fleet_told"
     told: str
     author: Author | None = None
     finder: str | None = None
+    robot: str | None = None
+    in_service: bool | None = None
+
+
+class LegEvent(FleetEvent):
+    """An event of one leg; `number` counts those of its robot."""
+
+    robot: str
+    number: int
+    booking: str
+    action: str
+    place: str
+
+
+class LegBegun(LegEvent):
+    """A robot is sent to a place for a booking; `start` is the place that it was at before."""
+
+    type: Literal["leg_begun"] = "leg_begun"
+    start: str
+
+
+class LegEnded(LegEvent):
+    """What became of a leg, why where it was not done, and where its robot is then."""
+
+    type: Literal["leg_ended"] = "leg_ended"
+    outcome: str
+    reason: str | None
+    at: str
 
 
 AnyEvent = Annotated[
@@ -761,7 +790,9 @@ AnyEvent = Annotated[
     | SiteClosed
     | RequestChanged
     | PlanChanged
-    | FleetTold,
+    | FleetTold
+    | LegBegun
+    | LegEnded,
     Field(discriminator="type"),
 ]
 

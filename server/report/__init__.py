@@ -1,1 +1,1 @@
-"""The report of a run: one self-contained HTML file, written from its events."""
+"""Reports, of a run and of a fleet: self-contained HTML files, written from events."""

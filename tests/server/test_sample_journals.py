@@ -23,6 +23,8 @@ OF_NO_RUN = {
     "document_deleted",
     "document_kept",
     "fleet_told",
+    "leg_begun",
+    "leg_ended",
     "plan_changed",
     "request_changed",
     "sign_in_failed",

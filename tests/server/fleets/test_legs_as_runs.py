@@ -21,6 +21,7 @@ from mend.server.fleets.fleets import KIND
 from mend.server.fleets.operator_requests import WayFound
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
+from mend.server.journal import events as ev
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.runtime.clock import WorldTime
 from mend.server.runtime.views import RunStatus
@@ -189,6 +190,35 @@ async def test_a_leg_is_in_the_journal_before_its_robot_hears_of_it() -> None:
         kept = (await work.journal.documents(KIND))[str(SITE)]
         (leg,) = FleetRecord.model_validate_json(kept).dispatcher.under_way
         assert (leg.robot, leg.booking, leg.action) == ("r0", "tea", "collect")
+
+
+async def _legs_of(journal: SqliteJournal) -> list[tuple[str, str, int]]:
+    """What is journaled of legs: kind of event, robot and number of the leg."""
+    return [
+        (each.type, each.robot, each.number)
+        for each in await journal.read(0, 1000)
+        if isinstance(each, ev.LegBegun | ev.LegEnded)
+    ]
+
+
+async def test_the_journal_tells_when_legs_begin_and_end_once_each_over_a_restart() -> None:
+    async with working("a") as work:
+        await work.fleet.submit(asked(), None)
+        fetching = await work.runs.nth(1)
+        assert await _legs_of(work.journal) == [("leg_begun", "r0", 1)]
+        await work.fleet.stop()
+        kept = (await work.journal.documents(KIND))[str(SITE)]
+        was = FleetRecord.model_validate_json(kept)
+        again = Dispatcher.restored(office(), work.fleet.dispatcher.setting, was.dispatcher)
+        work.fleet = _fleet(work.site, work.runs, work.journal, again)
+        work.fleet.start()
+        fetching.ended.set_result(("finished", True))
+        await work.runs.nth(2)
+        assert await _legs_of(work.journal) == [
+            ("leg_begun", "r0", 1),
+            ("leg_ended", "r0", 1),
+            ("leg_begun", "r0", 2),
+        ]
 
 
 async def test_after_a_restart_the_same_run_goes_on() -> None:
