@@ -2,17 +2,18 @@
 
     python benchmarks/building_drives.py [FILE...] [--buildings 10] [--first 0] [--robots 3]
         [--seconds 300] [--localizer enml|exact] [--unmapped 0.33] [--carried-every 0] [--lies 0.0]
+        [--people 0]
 
 Without building files it draws buildings by seeds. Half of the doors that people open are shut at
 first, and every now and then somebody steps in the way of a robot. Whoever is asked makes way, or
 opens the door, or presses the elevator's button (one time in five a wrong one), 2 s later; the
 robot looks whether that is so, and goes on. A drive that does not
 end at its goal is counted with the reason. With `--carried-every` somebody carries a robot that
-drives to elsewhere on its floor, about every so many seconds. A robot that is lost asks where it
-is; the answer is what is so, or with the chance `--lies` the contrary. How far off robots were
-while they did not say that they were lost is told, and `silent` counts how often one was more than
-2 m off for longer than 2 s without having said so. The exit code is 1 where a robot touched
-anything.
+drives to elsewhere on its floor, about every so many seconds. With `--people` so many walk about.
+A robot that is lost asks where it is; the answer is what is so, or with the chance `--lies` the
+contrary. How far off robots were while they did not say that they were lost is told, and `silent`
+counts how often one was more than 2 m off for longer than 2 s without having said so. The exit
+code is 1 where a robot touched anything.
 """
 
 # ruff: noqa: T201
@@ -69,6 +70,7 @@ class Drives:
             localizer=options.localizer,
             unmapped=options.unmapped,
             carried_every_s=options.carried_every,
+            people=options.people,
         )
         self._rng = np.random.default_rng([seed, 1])
         self._lies = options.lies
@@ -211,6 +213,7 @@ def main() -> int:
     parser.add_argument("--localizer", choices=["enml", "exact"], default="exact")
     parser.add_argument("--unmapped", type=float, default=0.0)
     parser.add_argument("--carried-every", type=float, default=0.0)
+    parser.add_argument("--people", type=int, default=0)
     parser.add_argument("--lies", type=float, default=0.0)
     arguments = parser.parse_args()
     scenes = [

@@ -15,7 +15,7 @@ from mend.robots.base.battery import LOW
 from mend.robots.base.body import RangeScan
 from mend.sim.building import laser
 from mend.sim.building.belief import Belief, BeliefSnapshot, FloorMap
-from mend.sim.building.building_robot import PERIOD_S, BuildingRobot, Senses
+from mend.sim.building.building_robot import PERIOD_S, RADIUS_M, BuildingRobot, Senses
 from mend.sim.building.bystander import RADIUS_M as PERSON_RADIUS_M
 from mend.sim.building.bystander import Bystander
 from mend.sim.building.cabin import Cabin, Call
@@ -32,6 +32,7 @@ from mend.sim.building.odometry import Odometer, OdometerSnapshot
 from mend.sim.building.options import BuildingOptions
 from mend.sim.building.robot_basket import BasketSnapshot, RobotBasket
 from mend.sim.building.robot_battery import BatterySnapshot, RobotBattery
+from mend.sim.building.walkers import Walkers, WalkerSnapshot
 from mend.tasks.frames import Frame
 from mend.tasks.intervention import Act, Intervention
 
@@ -66,6 +67,8 @@ class WorldSnapshot(StrictModel):
     wishes: dict[int, WishSnapshot] = {}
     baskets: list[BasketSnapshot] = []
     batteries: list[BatterySnapshot] = []
+    walkers: list[WalkerSnapshot] = []
+    walkers_draws: str | None = None
     furniture: dict[str, list[Row]]
     furniture_moves_s: float
     carries_s: float | None
@@ -120,6 +123,8 @@ class BuildingWorld:
         senses = Senses(self.time_s, self._height_m, self._scan, self.advance_cycle)
         self.robots = [self._robot(*start, senses, maps) for start in starts]
         self.batteries = [RobotBattery(options.battery_wh) for _ in self.robots]
+        self.walkers = Walkers(building, options.people, self._doors.values(), goods.seed)
+        self.walkers.leave_room_for((each.at for each in self.robots), RADIUS_M)
         self.baskets = [RobotBasket(goods, each, goods.seed) for each in range(len(self.robots))]
 
     def _robot(
@@ -143,6 +148,9 @@ class BuildingWorld:
         for door in self._doors.values():
             floor = door.name.split("/", 1)[0]
             door.let_pass(self._time_s, [(x, y) for x, y, _ in self._circles(floor)])
+        self.walkers.walk(
+            self._time_s, self.robots, [each.at for each in self.bystanders], self._segments
+        )
         self._move_furniture()
         if self._carrying.is_due(self._time_s):
             self._carry_one()
@@ -207,6 +215,7 @@ class BuildingWorld:
         there: list[tuple[object, FloorPose, float]] = [
             *((each, each.at, each.radius_m) for each in self.robots),
             *((each, each.at, PERSON_RADIUS_M) for each in self.bystanders),
+            *((each, each.at, PERSON_RADIUS_M) for each in self.walkers.people),
         ]
         return [
             (at.x, at.y, radius)
@@ -377,6 +386,8 @@ class BuildingWorld:
             wishes=wishes,
             baskets=[each.snapshot() for each in self.baskets],
             batteries=[each.snapshot() for each in self.batteries],
+            walkers=self.walkers.snapshot(),
+            walkers_draws=self.walkers.draws(),
             furniture=self._furniture.rows(),
             furniture_moves_s=self._furniture_moves_s,
             carries_s=self._carrying.due_s,
@@ -399,6 +410,8 @@ class BuildingWorld:
         if kept.batteries:
             for battery, held in zip(self.batteries, kept.batteries, strict=True):
                 battery.restore(held)
+        if kept.walkers_draws is not None:
+            self.walkers.restore(kept.walkers, kept.walkers_draws)
         self._furniture.restore(kept.furniture)
         self._furniture_moves_s = kept.furniture_moves_s
         self._carrying.due_s = kept.carries_s

@@ -38,6 +38,7 @@ class BuildingBench:
         carried_every_s: float = 0.0,
         forgetful: float = 0.0,
         battery_wh: float = 0.0,
+        people: int = 0,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
         setup = WorldSetup(
@@ -53,6 +54,7 @@ class BuildingBench:
                 "carried_every_s": carried_every_s,
                 "forgetful": forgetful,
                 "battery_wh": battery_wh,
+                "people": people,
             },
         )
         self.group: SharedWorld = BUILDINGS.create_agents(setup)

@@ -1,0 +1,277 @@
+"""People who walk from room to room, sit there, and step around robots and each other."""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mend.documents.strict_model import StrictModel
+from mend.maps.building.building import Building, DoorOpening
+from mend.maps.building.clearance import distances_m
+from mend.sim.building.building_robot import PERIOD_S, BuildingRobot
+from mend.sim.building.bystander import RADIUS_M
+from mend.sim.building.door import WorldDoor
+from mend.sim.building.draws import read_draws, written_draws
+from mend.sim.building.floor_pose import FloorPose
+from mend.sim.building.walkways import Point, Walkways
+
+Matrix = NDArray[np.float64]
+
+_SPEEDS_M_S = (0.7, 1.3)
+_SITS_S = (10.0, 60.0)
+_ARRIVED_M = 0.35
+_STUCK_S = 4.0
+"""Who needs so much longer than twice the way to the next point goes back."""
+_OPENS_DOOR_M = 1.0
+_HOLDS_DOOR_S = 10.0
+# The social force model of Helbing and Molnar: relaxation, strength and reach of repulsion.
+_RELAX_S = 0.5
+_PUSH_M_S2 = 2.0
+_PUSH_REACH_M = 0.3
+_KEEP_M = 0.05
+_KEEP_FROM_ROBOTS_M = 0.25
+_ROBOT_AHEAD_S = 1.0
+"""Nobody steps to where a robot is going to be so soon."""
+_TURNS_RAD = (0.0, -0.4, 0.4, -0.8, 0.8, -1.2, 1.2, -1.6, 1.6)
+
+
+class WalkerSnapshot(StrictModel):
+    """Who walks: where, how fast (m/s), to which room, along which points; sits until then (s)."""
+
+    floor: str
+    at: list[float]
+    velocity: list[float]
+    speed_m_s: float
+    room: str
+    way: list[list[float]]
+    left: str
+    passed: list[list[float]]
+    until_s: float
+    came_on_s: float
+
+
+@dataclass(slots=True)
+class Walker:
+    """`room`: where they sit, or go; `way`: the points still to come, none while they sit.
+
+    `left`, `passed`: the room they come from, and the points since.
+    """
+
+    at: FloorPose
+    velocity: Point
+    speed_m_s: float
+    room: str
+    way: list[Point]
+    left: str
+    passed: list[Point]
+    until_s: float
+    came_on_s: float = 0.0
+
+
+class Walkers:
+    """All who walk in a building; drawn by a generator of their own."""
+
+    def __init__(
+        self, building: Building, count: int, doors: Iterable[WorldDoor], seed: int
+    ) -> None:
+        """So many people in all, as long as there are seats for them."""
+        self._rng = np.random.default_rng([seed, 0x3A1C])
+        self._doors = [each for each in doors if each.plan.opens is DoorOpening.PEOPLE]
+        self._ways: dict[str, Walkways] = {}
+        if count:
+            self._ways = {name: Walkways(building, name) for name in building.floors}
+        self.people: list[Walker] = []
+        seats = [(f, room) for f, each in self._ways.items() for room in each.seats]
+        for number in self._rng.permutation(len(seats))[:count]:
+            floor, room = seats[int(number)]
+            at = FloorPose(floor, *self._ways[floor].seats[room])
+            speed = float(self._rng.uniform(*_SPEEDS_M_S))
+            sits_s = float(self._rng.uniform(0.0, _SITS_S[0]))
+            self.people.append(Walker(at, (0.0, 0.0), speed, room, [], room, [], sits_s))
+
+    def leave_room_for(self, starts: Iterable[FloorPose], radius_m: float) -> None:
+        """Whoever would be where a robot begins is not there at all."""
+        begin = list(starts)
+        self.people = [
+            each
+            for each in self.people
+            if all(
+                at.floor != each.at.floor
+                or math.hypot(at.x - each.at.x, at.y - each.at.y) > radius_m + RADIUS_M + 0.2
+                for at in begin
+            )
+        ]
+
+    def walk(
+        self,
+        time_s: float,
+        robots: Sequence[BuildingRobot],
+        others: Iterable[FloorPose],
+        segments: Callable[[str], Matrix],
+    ) -> None:
+        """One cycle; `segments`: what nobody walks through on a floor."""
+        standing, walls = list(others), dict[str, Matrix]()
+        for each in self.people:
+            if not each.way and not self._sets_out(each, time_s):
+                continue
+            floor = each.at.floor
+            if self._opens_doors(each, time_s) or floor not in walls:
+                walls[floor] = segments(floor)
+            circles = [*standing, *(e.at for e in self.people if e is not each)]
+            around = [
+                *((at.x, at.y, RADIUS_M + _KEEP_M) for at in circles if at.floor == floor),
+                *(c for robot in robots if robot.at.floor == floor for c in _ahead(robot)),
+            ]
+            self._step(each, time_s, np.array(around, np.float64).reshape(-1, 3), walls[floor])
+
+    def _sets_out(self, who: Walker, time_s: float) -> bool:
+        if time_s < who.until_s:
+            return False
+        ways = self._ways[who.at.floor]
+        there = [each for each in self.people if each.at.floor == who.at.floor]
+        taken = {room for each in there for room in (each.room, each.left)}
+        free = [each for each in ways.seats if each not in taken]
+        who.until_s = time_s + float(self._rng.uniform(*_SITS_S))
+        if not free:
+            return False
+        room = free[int(self._rng.integers(len(free)))]
+        way = ways.way(who.room, room)
+        if way is None:
+            return False
+        who.left, who.passed = who.room, [ways.seats[who.room]]
+        who.room, who.way, who.came_on_s = room, way, time_s
+        return True
+
+    def _opens_doors(self, who: Walker, time_s: float) -> bool:
+        opened = False
+        for door in self._doors:
+            if (
+                door.is_shut
+                and door.name.startswith(f"{who.at.floor}/")
+                and door.may_be_passed(time_s)
+                and door.distance_m(who.at.x, who.at.y) < _OPENS_DOOR_M
+            ):
+                door.hold_open(time_s + _HOLDS_DOOR_S)
+                opened = True
+        return opened
+
+    def _step(self, who: Walker, time_s: float, around: Matrix, walls: Matrix) -> None:
+        here = np.array([who.at.x, who.at.y])
+        goal = np.array(who.way[0])
+        if np.hypot(*(goal - here)) < (_ARRIVED_M if len(who.way) > 1 else 0.1):
+            who.passed.append(who.way.pop(0))
+            if not who.way:
+                who.left = who.room
+                who.velocity = (0.0, 0.0)
+                who.until_s = time_s + float(self._rng.uniform(*_SITS_S))
+            who.came_on_s = time_s
+            return
+        wanted = _pushed(np.array(who.velocity), here, goal, who.speed_m_s, around)
+        to = _free_step(here, wanted, around, walls)
+        if to is None:
+            who.velocity = (0.0, 0.0)
+        else:
+            x, y = float(to[0]), float(to[1])
+            who.velocity = ((x - who.at.x) / PERIOD_S, (y - who.at.y) / PERIOD_S)
+            who.at = FloorPose(who.at.floor, x, y)
+        if time_s - who.came_on_s > _STUCK_S + np.hypot(*(goal - here)) / who.speed_m_s * 2.0:
+            _turn_back(who, time_s)
+
+    # --- What they are rebuilt from ---
+
+    def snapshot(self) -> list[WalkerSnapshot]:
+        return [
+            WalkerSnapshot(
+                floor=each.at.floor,
+                at=[each.at.x, each.at.y],
+                velocity=list(each.velocity),
+                speed_m_s=each.speed_m_s,
+                room=each.room,
+                way=[list(point) for point in each.way],
+                left=each.left,
+                passed=[list(point) for point in each.passed],
+                until_s=each.until_s,
+                came_on_s=each.came_on_s,
+            )
+            for each in self.people
+        ]
+
+    def draws(self) -> str:
+        return written_draws(self._rng)
+
+    def restore(self, people: Iterable[WalkerSnapshot], draws: str) -> None:
+        """Raises `ValueError` for draws that no generator wrote."""
+        read_draws(self._rng, draws)
+        self.people = [
+            Walker(
+                FloorPose(each.floor, each.at[0], each.at[1]),
+                (each.velocity[0], each.velocity[1]),
+                each.speed_m_s,
+                each.room,
+                [(point[0], point[1]) for point in each.way],
+                each.left,
+                [(point[0], point[1]) for point in each.passed],
+                each.until_s,
+                each.came_on_s,
+            )
+            for each in people
+        ]
+
+
+def _turn_back(who: Walker, time_s: float) -> None:
+    who.room, who.left = who.left, who.room
+    who.way, who.passed = who.passed[::-1], who.way[::-1]
+    who.came_on_s = time_s
+
+
+def _ahead(robot: BuildingRobot) -> list[tuple[float, float, float]]:
+    """A robot as people avoid it: where it is, and where it is about to be."""
+    at, now = robot.at, robot.velocity()
+    cos, sin = math.cos(at.yaw), math.sin(at.yaw)
+    vx = now.forward_m_s * cos - now.left_m_s * sin
+    vy = now.forward_m_s * sin + now.left_m_s * cos
+    radius_m = robot.radius_m + _KEEP_FROM_ROBOTS_M
+    times = (0.0, 0.33, 0.67, 1.0) if vx or vy else (0.0,)
+    soon = [_ROBOT_AHEAD_S * each for each in times]
+    return [(at.x + vx * each, at.y + vy * each, radius_m) for each in soon]
+
+
+def _pushed(
+    velocity: Matrix, here: Matrix, goal: Matrix, speed_m_s: float, around: Matrix
+) -> Matrix:
+    """The velocity after one cycle: drawn to the goal, pushed off what is round."""
+    to_goal = goal - here
+    force = (speed_m_s * to_goal / np.hypot(*to_goal) - velocity) / _RELAX_S
+    if len(around):
+        off = here - around[:, :2]
+        away_m = np.maximum(np.hypot(off[:, 0], off[:, 1]), 1e-6)
+        push = _PUSH_M_S2 * np.exp((around[:, 2] + RADIUS_M - away_m) / _PUSH_REACH_M)
+        force = force + (np.minimum(push, 4.0)[:, None] * off / away_m[:, None]).sum(axis=0)
+    changed = velocity + force * PERIOD_S
+    fast = float(np.hypot(*changed))
+    return np.asarray(changed * min(1.0, speed_m_s / max(fast, 1e-9)))
+
+
+def _free_step(here: Matrix, velocity: Matrix, around: Matrix, walls: Matrix) -> Matrix | None:
+    """Where one cycle leads without touching anything, a little aside if need be; None: nowhere.
+
+    Who is too near to something already may only get farther from it.
+    """
+    turns = np.array(_TURNS_RAD)
+    cos, sin = np.cos(turns), np.sin(turns)
+    steps = PERIOD_S * np.stack(
+        [velocity[0] * cos - velocity[1] * sin, velocity[0] * sin + velocity[1] * cos], axis=1
+    )
+    to = here + steps
+    free = np.ones(len(to), dtype=bool)
+    if len(around):
+        need = around[:, 2] + RADIUS_M
+        now = np.hypot(*(here - around[:, :2]).T)
+        then = np.hypot(*np.moveaxis(to[:, None] - around[None, :, :2], 2, 0))
+        free &= (then >= np.minimum(need, now)).all(axis=1)
+    near_m, now_m = distances_m(to, walls), float(distances_m(here[None], walls)[0])
+    free &= near_m >= min(RADIUS_M + _KEEP_M, now_m)
+    found = np.flatnonzero(free)
+    return np.asarray(to[found[0]]) if len(found) else None
