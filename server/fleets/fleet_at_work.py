@@ -120,11 +120,12 @@ class FleetAtWork:
             if robot not in self._making_way and self._site.rests(robot):
                 task = asyncio.create_task(self._make_way(robot, to), name=f"{robot} makes way")
                 self._making_way[robot] = task
-        for leg in unwanted:
-            await self._legs[leg.robot][0].break_off()
         for leg in under_way:
             if leg.robot not in self._legs:
                 self._carry_out(leg)
+        # Nothing is begun after a break: what was under way may be over by then.
+        for execution in [self._legs[leg.robot][0] for leg in unwanted]:
+            await execution.break_off()
 
     def _decide(self, now_s: float) -> list[Leg]:
         """Have robots that rest set out for what is due; the legs that are not wanted any more."""
