@@ -88,6 +88,11 @@ class FakeRuns:
     refuse: int = 0
     runs: list[FakeRun] = field(default_factory=list)
     begun: asyncio.Event = field(default_factory=asyncio.Event)
+    aborted: asyncio.Event = field(default_factory=asyncio.Event)
+    """What is to be before an abort is over."""
+
+    def __post_init__(self) -> None:
+        self.aborted.set()
 
     async def start_run_of(self, run: UUID, request: Any, tree: TaskTreeDefinition) -> Any:
         if self.refuse:
@@ -109,6 +114,7 @@ class FakeRuns:
 
     async def abort(self, run: UUID, author: object = None) -> Any:  # noqa: ARG002
         next(each for each in self.runs if each.id == run).ended.set_result(("aborted", False))
+        await self.aborted.wait()
 
     async def has_run(self, run: UUID) -> bool:
         return any(each.id == run for each in self.runs)
@@ -275,6 +281,21 @@ async def test_what_failed_is_tried_again_later_and_fails_with_the_reason() -> N
         reason = await work.fleet.read(lambda all_: all_.view("visit").reason)
         assert "nobody came" in (reason or "")
         assert len(work.runs.runs) == 3
+
+
+async def test_a_leg_that_ends_while_it_is_broken_off_is_not_begun_again() -> None:
+    async with working("a") as work:
+        await work.fleet.submit(visit(), None)
+        await work.runs.nth(1)
+        work.runs.aborted.clear()
+        await work.fleet.cancel("visit", None)
+        async with asyncio.timeout(PATIENCE_S):
+            while await work.fleet.read(lambda all_: bool(all_.legs_under_way())):  # noqa: ASYNC110
+                await asyncio.sleep(0)
+        await work.fleet.submit(asked(), None)
+        work.runs.aborted.set()
+        fetching = await work.runs.nth(2)
+        assert fetching.robot == "r0"
 
 
 async def test_what_is_cancelled_is_broken_off() -> None:
