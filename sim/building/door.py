@@ -1,6 +1,5 @@
 """A door of the world: open or shut, by itself or by people."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,9 +7,7 @@ import numpy as np
 from mend.maps.building.building import Door, DoorOpening
 from mend.maps.building.clearance import distances_m
 
-Point = tuple[float, float]
-
-_NOTICES_M = 1.8
+NOTICES_M = 1.8
 """A door that opens itself does so when somebody is so near."""
 _STAYS_OPEN_S = 4.0
 """After the last one has gone by."""
@@ -42,9 +39,14 @@ class WorldDoor:
         spans = self.plan.open_s
         return not spans or any(opens <= time_s < shuts for opens, shuts in spans)
 
-    def let_pass(self, time_s: float, near: Iterable[Point]) -> None:
-        """One cycle: open for who comes, shut behind them; nothing shuts on anybody."""
-        somebody = any(self.distance_m(*each) < _NOTICES_M for each in near)
+    @property
+    def heeds_who_comes(self) -> bool:
+        """Whether it may open or shut by itself; one that somebody left open or shut stays so."""
+        opens = self.plan.opens is DoorOpening.ITSELF
+        return opens or self.shuts_s is not None or bool(self.plan.open_s)
+
+    def let_pass(self, time_s: float, *, somebody: bool) -> None:
+        """One cycle: open for who is within `NOTICES_M`, shut behind them; on nobody."""
         if not self.may_be_passed(time_s):
             self.is_shut = self.is_shut or not somebody
             return

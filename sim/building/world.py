@@ -21,7 +21,7 @@ from mend.sim.building.bystander import Bystander
 from mend.sim.building.cabin import Cabin, Call
 from mend.sim.building.carrying import Carrying
 from mend.sim.building.chargers import is_at_charger
-from mend.sim.building.door import WorldDoor
+from mend.sim.building.doors import WorldDoors
 from mend.sim.building.draws import read_draws, written_draws
 from mend.sim.building.elevator_bank import CabinSnapshot, ElevatorBank
 from mend.sim.building.floor_pose import FloorPose
@@ -104,15 +104,12 @@ class BuildingWorld:
         self.touches = self.carried = 0
         self._time_s = 0.0
         self.bystanders: list[Bystander] = []
-        self._doors = {
-            f"{floor}/{name}": WorldDoor(
-                f"{floor}/{name}",
-                plan,
-                plan.opens is DoorOpening.ITSELF or bool(rng.random() < options.shut_doors),
-            )
-            for floor, each in building.floors.items()
-            for name, plan in each.doors.items()
-        }
+        self.doors = WorldDoors(
+            building,
+            lambda door: (
+                door.opens is DoorOpening.ITSELF or bool(rng.random() < options.shut_doors)
+            ),
+        )
         self._rng = rng
         self._furniture = furniture
         self._furniture_moves_s = _FURNITURE_MOVES_EVERY_S
@@ -123,7 +120,7 @@ class BuildingWorld:
         senses = Senses(self.time_s, self._height_m, self._scan, self.advance_cycle)
         self.robots = [self._robot(*start, senses, maps) for start in starts]
         self.batteries = [RobotBattery(options.battery_wh) for _ in self.robots]
-        self.walkers = Walkers(building, options.people, self._doors.values(), goods.seed)
+        self.walkers = Walkers(building, options.people, self.doors.values(), goods.seed)
         self.walkers.leave_room_for((each.at for each in self.robots), RADIUS_M)
         self.baskets = [RobotBasket(goods, each, goods.seed) for each in range(len(self.robots))]
 
@@ -145,9 +142,7 @@ class BuildingWorld:
 
     def advance_cycle(self) -> None:
         self._time_s += PERIOD_S
-        for door in self._doors.values():
-            floor = door.name.split("/", 1)[0]
-            door.let_pass(self._time_s, [(x, y) for x, y, _ in self._circles(floor)])
+        self.doors.let_pass(self._time_s, self._circles)
         self.walkers.walk(
             self._time_s, self.robots, [each.at for each in self.bystanders], self._segments
         )
@@ -202,11 +197,6 @@ class BuildingWorld:
 
     # --- What there is ---
 
-    @property
-    def doors(self) -> Mapping[str, WorldDoor]:
-        """By `FLOOR/DOOR`."""
-        return self._doors
-
     def _height_m(self, floor: str) -> float:
         return self.elevators.height_m(floor, self._time_s)
 
@@ -228,15 +218,10 @@ class BuildingWorld:
         cabins = self.elevators.walls(floor)
         if floor not in self.building.floors:
             return cabins
-        shut = [
-            each.segment
-            for each in self._doors.values()
-            if each.is_shut and each.name.startswith(f"{floor}/")
-        ]
         return np.vstack(
             [
                 self.building.floors[floor].wall_segments,
-                np.array(shut, np.float64).reshape(-1, 4),
+                self.doors.shut(floor),
                 cabins,
                 self._furniture.segments(floor),
             ]
@@ -355,16 +340,10 @@ class BuildingWorld:
     def _open_for_who_waits(self) -> bool:
         opened = False
         for robot in self.robots:
-            near = [
-                (each.distance_m(robot.at.x, robot.at.y), each)
-                for each in self._doors.values()
-                if each.is_shut
-                and each.name.startswith(f"{robot.at.floor}/")
-                and each.may_be_passed(self._time_s)
-            ]
-            distance_m, door = min(near, key=lambda each: each[0], default=(math.inf, None))
-            if door is not None and distance_m < _AT_DOOR_M and not robot.moving:
-                door.hold_open(self._time_s + _HELD_OPEN_S)
+            at = robot.at
+            nearest = self.doors.nearest_shut(at.floor, at.x, at.y, self._time_s)
+            if nearest is not None and nearest[0] < _AT_DOOR_M and not robot.moving:
+                nearest[1].hold_open(self._time_s + _HELD_OPEN_S)
                 opened = True
         return opened
 
@@ -375,7 +354,7 @@ class BuildingWorld:
         kept = WorldSnapshot(
             time_s=self._time_s,
             robots=[(e.at.floor, e.at.x, e.at.y, e.at.yaw) for e in self.robots],
-            doors={name: (each.is_shut, each.shuts_s) for name, each in self._doors.items()},
+            doors={name: (each.is_shut, each.shuts_s) for name, each in self.doors.items()},
             bystanders=[(e.at.floor, e.at.x, e.at.y) for e in self.bystanders],
             cabins=self.elevators.snapshot(),
             odometers=[each.odometer.snapshot() for each in self.robots],
@@ -400,7 +379,7 @@ class BuildingWorld:
         kept = WorldSnapshot.model_validate_json(json.dumps(snapshot))
         if len(kept.robots) != len(self.robots):
             raise ValueError(f"expected {len(self.robots)} robots, got {len(kept.robots)}")
-        if kept.doors.keys() != self._doors.keys():
+        if kept.doors.keys() != self.doors.keys():
             raise ValueError("the snapshot has other doors than the building")
         self.elevators.restore(kept.cabins)
         self.goods.restore(kept.items, kept.wishes)
@@ -425,7 +404,7 @@ class BuildingWorld:
             if robot.belief is not None and belief is not None:
                 robot.belief.restore(belief)
         for name, (is_shut, shuts_s) in kept.doors.items():
-            self._doors[name].is_shut, self._doors[name].shuts_s = is_shut, shuts_s
+            self.doors[name].is_shut, self.doors[name].shuts_s = is_shut, shuts_s
         self.bystanders = [Bystander(FloorPose(*each)) for each in kept.bystanders]
 
     def close(self) -> None:
