@@ -49,7 +49,7 @@ def test_each_does_what_it_would_do_alone(
     below: list[Door],
     above: list[Door],
     visits: list[tuple[int, list[tuple[float, float]]]],
-    shut: bool,  # noqa: FBT001 - drawn
+    shut: bool,
 ) -> None:
     together = WorldDoors(building_of(below, above), lambda _: shut)
     alone = {name: WorldDoor(name, each.plan, shut) for name, each in together.items()}
