@@ -260,7 +260,7 @@ class FleetAtWork:
                 end = refused
         if why is not None:
             # Others fetch what it has, and do what it was to do.
-            self.dispatcher.robot_failed(robot, end.at, why, now_s)
+            self.dispatcher.robot_failed(robot, self._met_at(robot), why, now_s)
         self._noted.append(self._news.ended(leg, end))
 
     def _at(self, robot: str) -> str:
@@ -269,6 +269,12 @@ class FleetAtWork:
         place = None if where is None else self.places.nearest(*where)
         known = self.dispatcher.fleet.robots[robot].place
         return place or self.dispatcher.building.graph.places[known].name
+
+    def _met_at(self, robot: str) -> str:
+        """Where others go that fetch what a robot has: the nearest place that they are sent to."""
+        where = self._site.whereabouts(robot)
+        place = None if where is None else self.places.nearest(*where, of_goals=True)
+        return place or self._at(robot)
 
     async def _arrived(self, leg: Leg) -> None:
         async with self._at_once:
@@ -329,7 +335,7 @@ class FleetAtWork:
             self._note(f"took {robot} out of service: {reason}", author, robot, in_service=False)
             leg = next((e for e in self.dispatcher.legs_under_way() if e.robot == robot), None)
             if leg is None and self.dispatcher.fleet.robots[robot].works:
-                self.dispatcher.robot_failed(robot, self._at(robot), reason, self.now_s)
+                self.dispatcher.robot_failed(robot, self._met_at(robot), reason, self.now_s)
         if leg is not None and robot in self._legs:
             await self._legs[robot][0].break_off()
 

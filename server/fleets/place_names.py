@@ -32,13 +32,19 @@ class PlaceNames:
             )
         return self._called[full]
 
-    def nearest(self, x: float, y: float, z: float) -> str | None:
-        """The place that is nearest to a position of the scene; None where there is no floor."""
+    def nearest(self, x: float, y: float, z: float, *, of_goals: bool = False) -> str | None:
+        """The place that is nearest to a position of the scene; None where there is no floor.
+
+        `of_goals`: of those that robots are sent to.
+        """
         floor = self._building.floor_at(z)
         if floor is None:
             return None
         places = self._building.floors[floor].places
-        nearest = min(places, key=lambda n: math.hypot(places[n].x - x, places[n].y - y))
+        named = [n for n in places if not of_goals or f"{floor}/{n}" in self._called]
+        if not named:
+            return None
+        nearest = min(named, key=lambda n: math.hypot(places[n].x - x, places[n].y - y))
         return f"{floor}/{nearest}"
 
 

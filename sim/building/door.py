@@ -24,6 +24,7 @@ class WorldDoor:
     plan: Door
     is_shut: bool
     shuts_s: float | None = None
+    is_locked: bool = False
 
     @property
     def segment(self) -> tuple[float, float, float, float]:
@@ -35,15 +36,18 @@ class WorldDoor:
         return float(distances_m(np.array([[x, y]]), np.array([self.segment]))[0])
 
     def may_be_passed(self, time_s: float) -> bool:
-        """Whether it is one of the times at which it is not locked."""
+        """Whether nobody has locked it, and it is one of the times at which it may be open."""
         spans = self.plan.open_s
+        if self.is_locked:
+            return False
         return not spans or any(opens <= time_s < shuts for opens, shuts in spans)
 
     @property
     def heeds_who_comes(self) -> bool:
         """Whether it may open or shut by itself; one that somebody left open or shut stays so."""
         opens = self.plan.opens is DoorOpening.ITSELF
-        return opens or self.shuts_s is not None or bool(self.plan.open_s)
+        locks = self.is_locked and not self.is_shut
+        return opens or locks or self.shuts_s is not None or bool(self.plan.open_s)
 
     def let_pass(self, time_s: float, *, somebody: bool) -> None:
         """One cycle: open for who is within `NOTICES_M`, shut behind them; on nobody."""
@@ -54,6 +58,14 @@ class WorldDoor:
             self.hold_open(time_s + _STAYS_OPEN_S)
         elif self.shuts_s is not None and not somebody and time_s >= self.shuts_s:
             self.is_shut = True
+
+    def lock(self) -> None:
+        """Nobody opens it any more; it shuts once nobody is in it."""
+        self.is_locked = True
+
+    def unlock(self) -> None:
+        """It is shut, and may be opened again."""
+        self.is_locked = False
 
     def hold_open(self, until_s: float) -> None:
         """It is open, and does not fall shut before then."""

@@ -14,6 +14,7 @@ from mend.maps.building.clearance import distances_m
 from mend.robots.base.battery import LOW
 from mend.robots.base.body import RangeScan
 from mend.sim.building import laser
+from mend.sim.building.barriers import Barriers
 from mend.sim.building.belief import Belief, BeliefSnapshot, FloorMap
 from mend.sim.building.building_robot import PERIOD_S, RADIUS_M, BuildingRobot, Senses
 from mend.sim.building.bystander import RADIUS_M as PERSON_RADIUS_M
@@ -48,6 +49,8 @@ _FURNITURE_FROM_ROBOTS_M = 1.0
 _TRIES_TO_PUT_DOWN = 20
 _BEFORE_PERSON_M = 1.5
 """Who is at a place reaches the basket of a robot that stands so near to it."""
+_AT_HAND_M = 10.0
+"""People go so far for what is in the basket of a robot that does not get on."""
 _HELD_OPEN_S = 30.0
 """What people opened for a robot falls shut after so long, once nobody is there."""
 
@@ -63,6 +66,7 @@ class WorldSnapshot(StrictModel):
     odometers: list[OdometerSnapshot]
     beliefs: list[BeliefSnapshot | None]
     # Older ones have none of these.
+    barred: list[tuple[str, str]] = []
     items: dict[str, ItemSnapshot] = {}
     wishes: dict[int, WishSnapshot] = {}
     baskets: list[BasketSnapshot] = []
@@ -110,6 +114,7 @@ class BuildingWorld:
                 door.opens is DoorOpening.ITSELF or bool(rng.random() < options.shut_doors)
             ),
         )
+        self._barriers = Barriers(building, self.doors)
         self._rng = rng
         self._furniture = furniture
         self._furniture_moves_s = _FURNITURE_MOVES_EVERY_S
@@ -224,6 +229,7 @@ class BuildingWorld:
                 self.doors.shut(floor),
                 cabins,
                 self._furniture.segments(floor),
+                self._barriers.segments(floor),
             ]
         )
 
@@ -265,15 +271,37 @@ class BuildingWorld:
             case Act.RELEASE:
                 return self._make_way()
             case Act.PUT_IN:
-                return self.goods.put_in(intervention.object, self._stands_at)
+                at_hand = self._stands_at_hand
+                return self.goods.put_in(intervention.object, self._stands_at, at_hand)
             case Act.TAKE_OUT:
                 return self.goods.take_out(intervention.object, self._stands_at)
             case Act.CHARGE:
                 return self._plug_in()
+            case Act.BAR | Act.CLEAR as act:
+                assert intervention.between is not None, "checked before"
+                return self._bar_or_clear(act, intervention.between)
             case Act.STEAL:
                 return self.goods.steal(intervention.object)
             case act:
                 return f"there is nothing in a building for which anybody could do '{act}'"
+
+    def _bar_or_clear(self, act: Act, lane: tuple[str, str]) -> str:
+        try:
+            if act is Act.CLEAR:
+                self._barriers.clear(lane)
+            elif (put := self._barriers.bar(lane)) is not None and self._stands_in(*put):
+                self._barriers.clear(lane)
+                return f"somebody is in the way between {lane[0]} and {lane[1]}"
+        except ValueError as error:
+            return str(error)
+        return ""
+
+    def _stands_in(self, floor: str, segments: NDArray[np.float64]) -> bool:
+        """Whether a robot or a person is where something is to be put."""
+        return any(
+            distances_m(np.array([[x, y]]), segments)[0] < radius_m
+            for x, y, radius_m in self._circles(floor)
+        )
 
     def _stands_at(self, number: int, place: str | None) -> bool:
         """Whether a robot really stands, and before who is at a place, where one is named."""
@@ -284,6 +312,12 @@ class BuildingWorld:
         if at is None or robot.at.floor != at.floor:
             return False
         return math.hypot(robot.at.x - at.x, robot.at.y - at.y) <= _BEFORE_PERSON_M
+
+    def _stands_at_hand(self, number: int, other: int) -> bool:
+        """Whether another robot stands so near that people bring a robot what that one has."""
+        here, there = self.robots[number].at, self.robots[other]
+        near = math.hypot(here.x - there.at.x, here.y - there.at.y) <= _AT_HAND_M
+        return near and here.floor == there.at.floor and not there.moving
 
     def _plug_in(self) -> str:
         """Somebody plugs in all robots that stand with little left."""
@@ -361,6 +395,7 @@ class BuildingWorld:
             beliefs=[
                 None if each.belief is None else each.belief.snapshot() for each in self.robots
             ],
+            barred=self._barriers.snapshot(),
             items=items,
             wishes=wishes,
             baskets=[each.snapshot() for each in self.baskets],
@@ -381,6 +416,7 @@ class BuildingWorld:
             raise ValueError(f"expected {len(self.robots)} robots, got {len(kept.robots)}")
         if kept.doors.keys() != self.doors.keys():
             raise ValueError("the snapshot has other doors than the building")
+        self._barriers.restore(kept.barred)
         self.elevators.restore(kept.cabins)
         self.goods.restore(kept.items, kept.wishes)
         if kept.baskets:
