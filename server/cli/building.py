@@ -51,7 +51,7 @@ def run(
 ) -> None:
     """Have robots meet the requests of a file, helped by somebody who does what they ask.
 
-    Prints what happens; the exit code is 0 where everything was done.
+    Prints what happens; the exit code is 0 where everything was done that somebody still wanted.
     """
     import asyncio
 
@@ -67,7 +67,7 @@ def run(
         settings = own.model_copy(update={"journal": journal or new_run_journal(own, "shift")})
         shift = Shift(
             read_scene(scene),
-            read_request_file(requests).requests,
+            read_request_file(requests),
             seed=seed,
             options=read_options(option or []),
             fleet=FleetOptions(

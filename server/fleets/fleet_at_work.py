@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from datetime import datetime
 from functools import partial
-from typing import TypeVar
+from typing import Literal, TypeVar
 from uuid import UUID, uuid4
 
 from mend.errors import ConflictError, NotFoundError, RefusalError
@@ -14,6 +14,7 @@ from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd, LegOutcome
 from mend.server.background import Endless
+from mend.server.fleets.alarms import Alarms
 from mend.server.fleets.fleet_news import FleetNews
 from mend.server.fleets.fleet_record import FleetRecord
 from mend.server.fleets.fleets import KIND
@@ -78,6 +79,7 @@ class FleetAtWork:
         """What robots have found on the way to the place of the leg that they are on."""
         self._kept: FleetRecord | None = None
         self._noted: list[ev.Event] = []
+        self._alarms = Alarms(lambda: self.now_s)
         self.out_of_service = dict(out_of_service)
         """The robots that somebody has taken out, and why."""
 
@@ -114,6 +116,7 @@ class FleetAtWork:
             under_way = self.dispatcher.legs_under_way()
             for execution, _ in self._legs.values():
                 execution.look_again()
+            self._alarms.ring()
             self._let_time_pass()
             in_the_way = list(who_makes_way(self.dispatcher, self.places.names))
         for robot, to in in_the_way:
@@ -151,13 +154,20 @@ class FleetAtWork:
 
     def _let_time_pass(self) -> None:
         """Have the site's clock run to when there is something to be done, if there ever is."""
-        if not any(each.open for each in self.dispatcher.fleet.items.values()):
-            return
-        now_s, wakes_s = self.now_s, self.dispatcher.wakes_s()
+        now_s, wakes_s, alarm_s = self.now_s, None, self._alarms.next_s
+        if any(each.open for each in self.dispatcher.fleet.items.values()):
+            wakes_s = self.dispatcher.wakes_s()
+        if alarm_s is not None:
+            wakes_s = min(alarm_s, wakes_s or alarm_s)
         if any(execution.waits for execution, _ in self._legs.values()):
             wakes_s = min(now_s + LOOKS_AGAIN_S, wakes_s or now_s + LOOKS_AGAIN_S)
         if wakes_s is not None:
             self._site.let_time_pass(max(wakes_s, now_s + 1.0), self._pace)
+
+    async def wait_until(self, moment_s: float) -> None:
+        """Have the site's clock come to a moment, whether or not there is anything to do."""
+        self._changed.set()
+        await self._alarms.wait(moment_s)
 
     # --- Legs ---------------------------------------------------------------------------------
 
@@ -271,9 +281,9 @@ class FleetAtWork:
         return place or self.dispatcher.building.graph.places[known].name
 
     def _met_at(self, robot: str) -> str:
-        """Where others go that fetch what a robot has: the nearest place that they are sent to."""
+        """Where others are brought what a robot has that does not get on: it may bar its place."""
         where = self._site.whereabouts(robot)
-        place = None if where is None else self.places.nearest(*where, of_goals=True)
+        place = None if where is None else self.places.beside(*where)
         return place or self._at(robot)
 
     async def _arrived(self, leg: Leg) -> None:
@@ -338,6 +348,11 @@ class FleetAtWork:
                 self.dispatcher.robot_failed(robot, self._met_at(robot), reason, self.now_s)
         if leg is not None and robot in self._legs:
             await self._legs[robot][0].break_off()
+
+    async def have_answered(self, answers: Literal["live", "yes", "late"]) -> None:
+        """Who answers robots in the legs that begin from now on."""
+        async with self._at_once:
+            self._options = self._options.model_copy(update={"answers": answers})
 
     async def put_back(self, robot: str, author: ev.Author | None) -> None:
         """A robot works again, from where it stands.

@@ -63,7 +63,8 @@ def _request(site: UUID, tree: str, robot: str, options: FleetOptions) -> RunReq
     request = RunRequest(tree=tree, site=site, robots=[robot], answers="live")
     if options.answers == "live":
         return request
-    person = {"answers": ["yes"] * MOST_ANSWERS, "person": Person(acts=True)}
+    first = ["silence"] if options.answers == "late" else []
+    person = {"answers": [*first, *["yes"] * MOST_ANSWERS], "person": Person(acts=True)}
     return request.model_copy(update=person)
 
 

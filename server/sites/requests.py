@@ -13,14 +13,14 @@ class FleetOptions(BaseModel):
 
     `capacity`: what fits into a basket, in loads of requests; `transfer_places`: where things may
     change robots; `answers`: helpers (`live`), or a simulated person who always says yes, and does
-    what was asked for.
+    what was asked for (`late`: the first question of a leg is answered by nobody).
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
     capacity: Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)] = 3.0
     transfer_places: Annotated[tuple[str, ...], Field(max_length=100, strict=False)] = ()
-    answers: Literal["live", "yes"] = "live"
+    answers: Literal["live", "yes", "late"] = "live"
 
 
 class SiteRequest(BaseModel):
