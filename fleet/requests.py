@@ -270,7 +270,7 @@ class Transport(_Bringing):
 
 Request = Annotated[GoToRoom | DeliverMessage | Escort | Transport, Field(discriminator="kind")]
 
-_MODELS: Mapping[str, type[GoToRoom | DeliverMessage | Escort | Transport]] = {
+REQUESTS: Mapping[RequestKind, type[GoToRoom | DeliverMessage | Escort | Transport]] = {
     RequestKind.GO_TO_ROOM: GoToRoom,
     RequestKind.DELIVER_MESSAGE: DeliverMessage,
     RequestKind.ESCORT: Escort,
@@ -281,9 +281,9 @@ _MODELS: Mapping[str, type[GoToRoom | DeliverMessage | Escort | Transport]] = {
 def request_of(document: Mapping[str, Any]) -> GoToRoom | DeliverMessage | Escort | Transport:
     """The request that a document describes. Raises `WrongInputError`, a sentence per mistake."""
     kind = document.get("kind")
-    if not isinstance(kind, str) or kind not in _MODELS:
-        raise WrongInputError(f"'kind' must be one of {', '.join(_MODELS)}")
-    model = _MODELS[kind]
+    if not isinstance(kind, str) or kind not in list(RequestKind):
+        raise WrongInputError(f"'kind' must be one of {', '.join(REQUESTS)}")
+    model = REQUESTS[RequestKind(kind)]
     try:
         return model.model_validate({**document, "kind": RequestKind(kind)})
     except ValidationError as error:

@@ -10,6 +10,13 @@ from mend.fleet.requests import Request, RequestStatus
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
 from mend.server.api.services import Limit, Offset, SiteId, WithCaller, WithServices
+from mend.server.fleets.asking import (
+    AskedRobotView,
+    UnderstoodView,
+    WordsAsked,
+    asked_robot,
+    understand,
+)
 from mend.server.fleets.operator_requests import OutOfService, WayFound
 from mend.server.fleets.views import FleetView, RequestView
 
@@ -20,6 +27,7 @@ EXAMPLES = [
      "destination": "F2/203"},
     {"kind": "deliver_message", "name": "lunch", "place": "F1/102", "message": "Lunch is ready."},
 ]  # fmt: skip
+WORDS = [{"words": "bring this to room 203 by three o'clock", "robot": "robot1", "clock": "14:20"}]
 AtSite = Annotated[
     UUID | None, Query(description="The site whose robots are meant, where several take requests.")
 ]
@@ -47,6 +55,18 @@ async def make_request(
     at, booked = await services.fleets.submit(site, request, caller.author)
     response.headers["Location"] = f"/api/requests/{booked.name}?site={at}"
     return RequestView.of(at, booked)
+
+
+@router.post(
+    "/api/requests/understand",
+    operation_id="understand_request",
+    responses=documented(400, 401, 403, 404, 409, 413, 421, 422),
+)
+async def understand_request(
+    asked: Annotated[WordsAsked, Body(examples=WORDS)], services: WithServices, site: AtSite = None
+) -> UnderstoodView:
+    """What somebody asks for in plain English, to be read back to them before it is asked for."""
+    return await understand(await services.fleets.fleet(site), asked)
 
 
 @router.get("/api/requests", operation_id="list_requests", responses=documented(401, 404, 421, 422))
@@ -116,6 +136,18 @@ async def get_fleet(site: SiteId, services: WithServices) -> FleetView:
 
 
 FleetRobotName = Annotated[str, Path(max_length=128, description="The robot's name.")]
+
+
+@router.get(
+    "/api/sites/{site}/fleet/robots/{robot}/asking",
+    operation_id="get_asked_robot",
+    responses=documented(401, 404, 409, 421, 422),
+)
+async def get_asked_robot(
+    site: SiteId, robot: FleetRobotName, services: WithServices
+) -> AskedRobotView:
+    """Where a robot is and what may be asked of it, for whoever stands at its touch screen."""
+    return asked_robot(await services.fleets.fleet(site), robot)
 
 
 @router.post(

@@ -5,21 +5,23 @@ import logging
 from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from datetime import datetime
-from functools import partial
+from functools import cached_property, partial
 from typing import Literal, TypeVar
 from uuid import UUID, uuid4
 
 from mend.errors import ConflictError, NotFoundError, RefusalError
+from mend.fleet.asking.spoken_places import SpokenPlaces
 from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd, LegOutcome
+from mend.fleet.requests import RequestKind
 from mend.server.background import Endless
 from mend.server.fleets.alarms import Alarms
 from mend.server.fleets.fleet_news import FleetNews
 from mend.server.fleets.fleet_record import FleetRecord
 from mend.server.fleets.fleets import KIND
 from mend.server.fleets.leg_execution import LegExecution, LegTurn
-from mend.server.fleets.leg_task import require_doable, way_of, way_request
+from mend.server.fleets.leg_task import doable_kinds, require_doable, way_of, way_request
 from mend.server.fleets.making_way import who_makes_way
 from mend.server.fleets.operator_requests import WayFound
 from mend.server.fleets.place_names import PlaceNames
@@ -272,6 +274,28 @@ class FleetAtWork:
             # Others fetch what it has, and do what it was to do.
             self.dispatcher.robot_failed(robot, self._met_at(robot), why, now_s)
         self._noted.append(self._news.ended(leg, end))
+
+    def stands_at(self, robot: str) -> str | None:
+        """The place at which somebody asks a robot; None where none is sent. Raises
+        `NotFoundError`."""
+        self._require_robot(robot)
+        place = self._at(robot)
+        return place if place in self.places.names else None
+
+    @property
+    def kinds(self) -> list[RequestKind]:
+        """What may be asked of its robots."""
+        return doable_kinds(self._behaviors)
+
+    @cached_property
+    def spoken_places(self) -> SpokenPlaces:
+        """The places as people say them."""
+        return SpokenPlaces(self.places.names)
+
+    @property
+    def pace(self) -> float | None:
+        """Seconds of the site's clock per second; None where it goes as fast as it can."""
+        return self._pace
 
     def _at(self, robot: str) -> str:
         """The place that a robot is nearest to, as far as is known."""

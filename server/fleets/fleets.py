@@ -138,8 +138,9 @@ class Fleets:
         views = [(each.site, await each.read(lambda all_: all_.views())) for each in fleets]
         return [(at, view) for at, of_site in views for view in of_site]
 
-    async def fleet(self, site: UUID) -> "FleetAtWork":
-        """The fleet of a site. Raises `NotFoundError`, or `ConflictError` where it has none."""
+    async def fleet(self, site: UUID | None) -> "FleetAtWork":
+        """The fleet of a site, or the only one. Raises `NotFoundError`, or `ConflictError` where it
+        has none."""
         return await self._of(site)
 
 

@@ -13,7 +13,7 @@ from mend.documents.validation import describe_mistake
 from mend.errors import WrongInputError
 from mend.fleet.dispatch.booking import AnyRequest
 from mend.fleet.dispatch.leg import Leg
-from mend.fleet.requests import DeliverMessage, LegAction, Transport
+from mend.fleet.requests import REQUESTS, DeliverMessage, LegAction, RequestKind, Transport
 from mend.robots.execution.behavior import Behavior
 from mend.server.runtime.requests import RunRequest
 from mend.server.sites.requests import FleetOptions
@@ -76,6 +76,18 @@ def item_of(what: str, booking: str) -> str:
     if len(asked) > _MOST_OF_WHAT:
         asked = f"{asked[: _MOST_OF_WHAT - 9]}_{crc32(booking.encode()):08x}"
     return words if words == asked else f"{words}-{asked}"
+
+
+def doable_kinds(behaviors: Mapping[str, type[Behavior]]) -> list[RequestKind]:
+    """The kinds of requests that behaviors of robots can do."""
+    return [
+        kind
+        for kind, model in REQUESTS.items()
+        if all(
+            BEHAVIORS.get(each) in behaviors
+            for each in {model.fetching, model.bringing} - {LegAction.VISIT}
+        )
+    ]
 
 
 def require_doable(request: AnyRequest, behaviors: Mapping[str, type[Behavior]]) -> None:

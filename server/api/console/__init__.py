@@ -52,6 +52,7 @@ Accepted = Annotated[str, Header(alias="accept-encoding")]
 @router.get("/start")
 @router.get("/start/{tree}")
 @router.get("/requests")
+@router.get("/robots/{robot}/ask")
 @router.get("/settings")
 async def view(accept_encoding: Accepted = "") -> Response:
     """The page; which view it shows is its own business."""
