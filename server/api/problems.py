@@ -61,8 +61,8 @@ SOON = {"Retry-After": "1"}
 class Problem(BaseModel):
     """Why a request was refused. `answered_by` on a lost race, `errors` one per mistake.
 
-    `not_connected`: the robots that are to come before it can be done. `next_possible_s`: from when
-    until when a request could be met.
+    `not_connected`: the robots that are to come before it can be done. `why`: what keeps a request from
+    being met; `next_possible_s`: from when until when it could be.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -75,6 +75,7 @@ class Problem(BaseModel):
     prompt: UUID | None = None
     errors: list[str] | None = None
     not_connected: list[str] | None = None
+    why: str | None = None
     next_possible_s: list[float] | None = None
 
 
@@ -114,7 +115,7 @@ def problem_of(error: Exception) -> Problem | None:
     if isinstance(error, NotConnectedError):
         return problem(status, str(error), not_connected=error.robots)
     if isinstance(error, RequestRefusedError):
-        return problem(status, str(error), next_possible_s=error.next_possible_s)
+        return problem(status, str(error), why=error.why, next_possible_s=error.next_possible_s)
     if isinstance(error, WrongInputError):
         return problem(status, str(error), errors=error.sentences or [str(error)])
     return problem(status, str(error))

@@ -9,7 +9,7 @@ import { session } from "../state/service";
 import { ConnectionBar } from "./connection_bar";
 import { Header } from "./header";
 import { later } from "./later";
-import { route } from "./router";
+import { type Route, route } from "./router";
 import "./app.css";
 
 const RunView = later(() => import("../run/run_view").then((module) => module.RunView));
@@ -18,12 +18,22 @@ const TreesView = later(() => import("../trees/trees_view").then((module) => mod
 const TreeEditor = later(() => import("../trees/tree_editor").then((module) => module.TreeEditor));
 const StartRun = later(() => import("../run/start/start_run").then((module) => module.StartRun));
 const RequestsView = later(() => import("../requests/requests_view").then((module) => module.RequestsView));
+const TouchView = later(() => import("../touch/touch_view").then((module) => module.TouchView));
 const SettingsView = later(() => import("../settings/settings_view").then((module) => module.SettingsView));
 
 export function App() {
   useEffect(() => (session.value === "in" ? followFleets() : undefined), [session.value]);
   if (session.value === "unknown") return <p class="app-waiting">Looking for the service …</p>;
   if (session.value !== "in") return <SignIn />;
+  const shown = route.value;
+  // Who stands before a robot is no helper of others: no questions, and no way to other pages.
+  if (shown.view === "touch") {
+    return (
+      <main id="main" tabIndex={-1}>
+        <TouchView key={shown.robot} robot={shown.robot} />
+      </main>
+    );
+  }
   return (
     <>
       <a class="skip" href="#main">
@@ -36,14 +46,13 @@ export function App() {
       <Announcer />
       <AskBar />
       <main id="main" tabIndex={-1}>
-        <View />
+        <View shown={shown} />
       </main>
     </>
   );
 }
 
-function View() {
-  const shown = route.value;
+function View({ shown }: { shown: Exclude<Route, { view: "touch" }> }) {
   switch (shown.view) {
     case "questions":
       return <QuestionsView />;

@@ -13,6 +13,14 @@ const CONNECTION: Readonly<Record<ConnectionState, string>> = {
   closed: "Not connected",
 };
 
+export function Connection() {
+  return (
+    <p class={`connection ${connection.value}`} role="status">
+      {CONNECTION[connection.value]}
+    </p>
+  );
+}
+
 export function Header() {
   const view = route.value.view;
   const count = questions.value.length;
@@ -39,9 +47,7 @@ export function Header() {
           </Place>
         )}
       </nav>
-      <p class={`connection ${connection.value}`} role="status">
-        {CONNECTION[connection.value]}
-      </p>
+      <Connection />
       <a class="who" href="/settings" aria-current={view === "settings" ? "page" : undefined}>
         {helperName.value}
       </a>

@@ -10,6 +10,7 @@ export type Route =
   | { view: "edit"; tree: string | null }
   | { view: "start"; tree: string | null }
   | { view: "requests" }
+  | { view: "touch"; robot: string }
   | { view: "settings" }
   | { view: "unknown"; path: string };
 
@@ -19,6 +20,7 @@ export const route = computed(() => routeOf(path.value));
 
 export function routeOf(address: string): Route {
   const [first = "", second, ...rest] = address.split("/").filter(Boolean).map(decodeURIComponent);
+  if (first === "robots" && second !== undefined && rest.join("/") === "ask") return { view: "touch", robot: second };
   if (rest.length > 0) return { view: "unknown", path: address };
   if (second === undefined) {
     if (first === "") return { view: "questions" };

@@ -6,7 +6,10 @@ import { may, whyNot } from "../state/access";
 import * as rest from "../wire/rest";
 import type { RequestView, SiteView } from "../wire/types";
 import { fleets } from "./fleets";
+import { Followed } from "./followed";
 import { expectation, isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "./request_words";
+import { type RequestDocument, useAsking } from "./use_asking";
+import { useKinds } from "./use_kinds";
 import { useRequests } from "./use_requests";
 import { WishForm } from "./wish_form";
 import "./requests.css";
@@ -58,6 +61,11 @@ function NobodyTakesAny() {
 
 function OfSite({ site }: { site: SiteView }) {
   const { requests, fleet, failure, again } = useRequests(site.id);
+  const { asking, ask, forget } = useAsking(site.id);
+  const kinds = useKinds(site.id, fleet?.robots[0]?.robot);
+  const clock = { now: fleet?.now_s ?? 0, speed: site.speed };
+  const mine = asking.phase === "booked" ? requests?.find(({ name }) => name === asking.name) : undefined;
+  const askAndRead = (request: RequestDocument) => ask(request).then(again);
   const open = requests?.filter((each) => !isOver(each)) ?? [];
   const over = requests?.filter(isOver).reverse() ?? [];
   return (
@@ -65,7 +73,11 @@ function OfSite({ site }: { site: SiteView }) {
       <p class="mistake" role="alert">
         {failure}
       </p>
-      {fleet !== null && (may("helper") ? <WishForm fleet={fleet} asked={again} /> : <p class="quiet">{whyNot("Asking for something", "helper")}</p>)}
+      {mine !== undefined && <Followed request={mine} clock={clock} changed={again} />}
+      {fleet !== null && may("helper") && (
+        <WishForm fleet={fleet} kinds={kinds} clock={clock} asking={asking} ask={askAndRead} forget={forget} />
+      )}
+      {fleet !== null && !may("helper") && <p class="quiet">{whyNot("Asking for something", "helper")}</p>}
       {requests === null && failure === "" && <p class="quiet">Loading …</p>}
       {requests !== null && (
         <>

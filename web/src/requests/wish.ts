@@ -1,10 +1,11 @@
 // What somebody fills in, and the request that it is.
-export type Kind = "transport" | "deliver_message" | "go_to_room";
+export type Kind = "transport" | "deliver_message" | "go_to_room" | "escort";
 
 export interface Wish {
   kind: Kind;
   what: string;
   message: string;
+  person: string;
   origin: string;
   destination: string;
   place: string;
@@ -16,12 +17,14 @@ export const NO_WISH: Wish = {
   kind: "transport",
   what: "",
   message: "",
+  person: "",
   origin: "",
   destination: "",
   place: "",
   within: "",
 };
 
+const UNLIKE_CHARS = 4;
 const LONGEST_NAME = 40;
 
 /** What is missing, in a sentence; empty where nothing is. */
@@ -31,14 +34,26 @@ export function missing(wish: Wish): string {
   switch (wish.kind) {
     case "transport":
       if (wish.what.trim() === "") return "Say what is to be brought.";
-      if (wish.origin === "" || wish.destination === "") return "Say from where, and to where.";
-      return wish.origin === wish.destination ? "It is there already: choose another place." : "";
+      return endsMissing(wish);
     case "deliver_message":
       if (wish.message.trim() === "") return "Say what is to be told.";
       return wish.place === "" ? "Say where." : "";
     case "go_to_room":
       return wish.place === "" ? "Say where." : "";
+    case "escort":
+      if (wish.person.trim() === "") return "Say who is to be shown the way.";
+      return endsMissing(wish);
   }
+}
+
+function endsMissing({ origin, destination }: Wish): string {
+  if (origin === "" || destination === "") return "Say from where, and to where.";
+  return origin === destination ? "It is there already: choose another place." : "";
+}
+
+/** What tells a request from others of the same words. */
+export function newName(): string {
+  return crypto.randomUUID().slice(0, UNLIKE_CHARS);
 }
 
 /** The request at `now` of the building's clock; `unlike` tells it from others of the same words. */
@@ -52,10 +67,12 @@ export function requestOf(wish: Wish, now: number, unlike: string): Record<strin
       return { kind: wish.kind, name, message: wish.message.trim(), place: wish.place, ...latest };
     case "go_to_room":
       return { kind: wish.kind, name, place: wish.place, ...latest };
+    case "escort":
+      return { kind: wish.kind, name, person: wish.person.trim(), origin: wish.origin, destination: wish.destination, ...latest };
   }
 }
 
 function wordsOf({ kind, what }: Wish): string {
   const words = kind === "transport" ? what.replace(/[^A-Za-z0-9]+/g, "_").replace(/^[^A-Za-z]+|_+$/g, "") : "";
-  return words.slice(0, LONGEST_NAME) || { transport: "thing", deliver_message: "message", go_to_room: "visit" }[kind];
+  return words.slice(0, LONGEST_NAME) || { transport: "thing", deliver_message: "message", go_to_room: "visit", escort: "escort" }[kind];
 }

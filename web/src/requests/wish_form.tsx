@@ -1,116 +1,160 @@
 // The form in which somebody asks robots of a building for something.
 import { useId, useState } from "preact/hooks";
-import * as rest from "../wire/rest";
-import { Refusal } from "../wire/rest";
-import type { FleetView } from "../wire/types";
-import { within } from "./request_words";
-import { type Kind, missing, NO_WISH, requestOf, type Wish } from "./wish";
+import type { FleetView, RequestKind } from "../wire/types";
+import { Confirming } from "./confirming";
+import { InWords } from "./in_words";
+import { placeMeant, said } from "./places";
+import { Refused } from "./refused";
+import type { RequestDocument, UseAsking } from "./use_asking";
+import { type Kind, missing, newName, NO_WISH, requestOf, type Wish } from "./wish";
+import type { SiteClock } from "./when";
 
 const KINDS: readonly (readonly [Kind, string, string])[] = [
   ["transport", "Bring something", "A robot fetches it and hands it over."],
   ["deliver_message", "Tell something", "A robot comes and tells it."],
   ["go_to_room", "Have a robot come", "It comes, and goes on to whoever else wants it."],
+  ["escort", "Show somebody the way", "A robot meets them and goes ahead."],
 ];
-const UNLIKE_CHARS = 4;
 
-interface WishFormProps {
+interface WishFormProps extends UseAsking {
   fleet: FleetView;
-  /** Something was asked for. */
-  asked: () => void;
+  kinds: readonly RequestKind[];
+  clock: SiteClock;
 }
 
-export function WishForm({ fleet, asked }: WishFormProps) {
+export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormProps) {
   const [wish, setWish] = useState<Wish>(NO_WISH);
-  const [failure, setFailure] = useState("");
-  const [instead, setInstead] = useState<number | null>(null);
-  const [sending, setSending] = useState(false);
+  const [mistake, setMistake] = useState("");
+  const [inWords, setInWords] = useState<{ request: RequestDocument; readBack: string } | null>(null);
+  const list = useId();
   const fill = (change: Partial<Wish>) => {
     setWish({ ...wish, ...change });
-    setFailure("");
-    setInstead(null);
+    setMistake("");
+    if (asking.phase === "refused") forget();
   };
-  const send = async (wanted: Wish) => {
-    const mistake = missing(wanted);
-    setFailure(mistake);
-    setInstead(null);
-    if (mistake !== "") return;
-    setSending(true);
-    try {
-      await rest.makeRequest(fleet.site, requestOf(wanted, fleet.now_s, crypto.randomUUID().slice(0, UNLIKE_CHARS)));
-      setWish({ ...NO_WISH, kind: wanted.kind });
-      asked();
-    } catch (error) {
-      setFailure(error instanceof Error ? error.message : String(error));
-      const by = error instanceof Refusal ? error.nextPossible?.[1] : undefined;
-      setInstead(by === undefined ? null : Math.ceil((by - fleet.now_s) / 60));
-    } finally {
-      setSending(false);
+  const send = async () => {
+    const wanted = withPlaces(wish, fleet.places);
+    const wrong = missing(wanted.wish) || wanted.mistake;
+    setMistake(wrong);
+    if (wrong === "") await ask(requestOf(wanted.wish, fleet.now_s, newName()));
+  };
+  const busy = asking.phase === "sending";
+  const booked = asking.phase === "booked" ? asking.name : null;
+  const [seen, setSeen] = useState<string | null>(null);
+  if (booked !== seen) {
+    // What is booked is not asked for once more by mistake.
+    setSeen(booked);
+    if (booked !== null) {
+      setWish({ ...NO_WISH, kind: wish.kind });
+      setInWords(null);
     }
-  };
+  }
   return (
-    <form
-      class="panel wish"
-      aria-labelledby="wish-heading"
-      onSubmit={(event) => {
-        event.preventDefault();
-        void send(wish);
-      }}
-    >
+    <section class="panel wish" aria-labelledby="wish-heading">
       <h2 id="wish-heading">Ask for something</h2>
-      <fieldset class="wish-kinds">
-        <legend class="label">What</legend>
-        <div class="choices">
-          {KINDS.map(([kind, name, about]) => (
-            <label key={kind} class="choice">
-              <input type="radio" name="kind" checked={wish.kind === kind} onChange={() => fill({ kind })} />
-              <span>
-                <strong>{name}</strong>
-                <span class="small quiet">{about}</span>
-              </span>
-            </label>
-          ))}
-        </div>
-      </fieldset>
-      <div class="wish-fields">
-        {wish.kind === "transport" && (
-          <>
+      {inWords === null ? (
+        <InWords
+          site={fleet.site}
+          robot={null}
+          example={`bring the mail from ${said(fleet.places[0] ?? "101")} to ${said(fleet.places.at(-1) ?? "305")}`}
+          understood={(request, readBack) => {
+            forget();
+            setInWords({ request, readBack });
+          }}
+        />
+      ) : (
+        <Confirming
+          readBack={inWords.readBack}
+          busy={busy}
+          yes={() => void ask(inWords.request)}
+          no={() => {
+            setInWords(null);
+            forget();
+          }}
+        />
+      )}
+      <form
+        class="wish"
+        aria-label="Fill in what you want"
+        onSubmit={(event) => {
+          event.preventDefault();
+          void send();
+        }}
+      >
+        <fieldset class="wish-kinds">
+          <legend class="label">Or fill in what you want</legend>
+          <div class="choices">
+            {KINDS.filter(([kind]) => kind !== "escort" || kinds.includes(kind)).map(([kind, name, about]) => (
+              <label key={kind} class="choice">
+                <input type="radio" name="kind" checked={wish.kind === kind} onChange={() => fill({ kind })} />
+                <span>
+                  <strong>{name}</strong>
+                  <span class="small quiet">{about}</span>
+                </span>
+              </label>
+            ))}
+          </div>
+        </fieldset>
+        <div class="wish-fields">
+          {wish.kind === "transport" && (
             <Words label="What is to be brought" value={wish.what} onInput={(what) => fill({ what })} />
-            <PlaceChoice label="From" places={fleet.places} value={wish.origin} onChange={(origin) => fill({ origin })} />
-            <PlaceChoice label="To" places={fleet.places} value={wish.destination} onChange={(destination) => fill({ destination })} />
-          </>
-        )}
-        {wish.kind === "deliver_message" && (
-          <Words label="What is to be told" value={wish.message} onInput={(message) => fill({ message })} />
-        )}
-        {wish.kind !== "transport" && (
-          <PlaceChoice label="Where" places={fleet.places} value={wish.place} onChange={(place) => fill({ place })} />
-        )}
-        <div class="field">
-          <label for="wish-within">Within (minutes)</label>
-          <input
-            id="wish-within"
-            type="text"
-            inputMode="numeric"
-            value={wish.within}
-            onInput={(event) => fill({ within: event.currentTarget.value })}
-          />
+          )}
+          {wish.kind === "escort" && (
+            <Words label="Who is to be shown the way" value={wish.person} onInput={(person) => fill({ person })} />
+          )}
+          {wish.kind === "deliver_message" && (
+            <Words label="What is to be told" value={wish.message} onInput={(message) => fill({ message })} />
+          )}
+          {wish.kind === "transport" || wish.kind === "escort" ? (
+            <>
+              <PlaceField label="From" list={list} value={wish.origin} onInput={(origin) => fill({ origin })} />
+              <PlaceField label="To" list={list} value={wish.destination} onInput={(destination) => fill({ destination })} />
+            </>
+          ) : (
+            <PlaceField label="Where" list={list} value={wish.place} onInput={(place) => fill({ place })} />
+          )}
+          <div class="field">
+            <label for="wish-within">Within (minutes), if it is urgent</label>
+            <input
+              id="wish-within"
+              type="text"
+              inputMode="numeric"
+              autocomplete="off"
+              value={wish.within}
+              onInput={(event) => fill({ within: event.currentTarget.value })}
+            />
+          </div>
         </div>
-      </div>
-      <p class="mistake" role="alert">
-        {failure}
-      </p>
-      <div class="wish-buttons">
-        <button class="button primary" type="submit" disabled={sending}>
-          Ask for it
-        </button>
-        {instead !== null && (
-          <button class="button" type="button" onClick={() => void send({ ...wish, within: String(instead) })}>
-            Ask for it {within(60 * instead)} instead
+        <datalist id={list}>
+          {fleet.places.map((place) => (
+            <option key={place} value={said(place)} />
+          ))}
+        </datalist>
+        <p class="mistake" role="alert">
+          {mistake}
+        </p>
+        <div class="wish-buttons">
+          <button class="button primary" type="submit" disabled={busy}>
+            Ask for it
           </button>
-        )}
-      </div>
-    </form>
+        </div>
+      </form>
+      {asking.phase === "refused" && <Refused refused={asking} clock={clock} ask={(request) => void ask(request)} />}
+    </section>
   );
+}
+
+/** The wish with places for what was written, and what is wrong with that. */
+function withPlaces(wish: Wish, places: readonly string[]): { wish: Wish; mistake: string } {
+  const found = { ...wish };
+  let mistake = "";
+  for (const field of ["origin", "destination", "place"] as const) {
+    if (wish[field].trim() === "") continue;
+    const place = placeMeant(wish[field], places);
+    if (typeof place === "string") found[field] = place;
+    else mistake ||= place.mistake;
+  }
+  return { wish: found, mistake };
 }
 
 const LONGEST = 300;
@@ -120,31 +164,40 @@ function Words({ label, value, onInput }: { label: string; value: string; onInpu
   return (
     <div class="field wish-words">
       <label for={id}>{label}</label>
-      <input id={id} type="text" maxLength={LONGEST} value={value} onInput={(event) => onInput(event.currentTarget.value)} />
+      <input
+        id={id}
+        type="text"
+        autocomplete="off"
+        maxLength={LONGEST}
+        value={value}
+        onInput={(event) => onInput(event.currentTarget.value)}
+      />
     </div>
   );
 }
 
-interface PlaceChoiceProps {
+interface PlaceFieldProps {
   label: string;
-  places: readonly string[];
+  /** The id of the list of places. */
+  list: string;
   value: string;
-  onChange: (place: string) => void;
+  onInput: (written: string) => void;
 }
 
-function PlaceChoice({ label, places, value, onChange }: PlaceChoiceProps) {
+function PlaceField({ label, list, value, onInput }: PlaceFieldProps) {
   const id = useId();
   return (
     <div class="field">
       <label for={id}>{label}</label>
-      <select id={id} value={value} onChange={(event) => onChange(event.currentTarget.value)}>
-        <option value="">Choose a place</option>
-        {places.map((place) => (
-          <option key={place} value={place}>
-            {place.replace("/", " ")}
-          </option>
-        ))}
-      </select>
+      <input
+        id={id}
+        type="text"
+        autocomplete="off"
+        placeholder="Room"
+        list={list}
+        value={value}
+        onInput={(event) => onInput(event.currentTarget.value)}
+      />
     </div>
   );
 }

@@ -1,6 +1,7 @@
 // The service's REST interface, one function an operation.
 import type {
   Answered,
+  AskedRobotView,
   DialogueView,
   FleetView,
   Intervention,
@@ -18,6 +19,7 @@ import type {
   SessionView,
   SiteView,
   SpeechView,
+  UnderstoodView,
   DocumentCheck,
   DocumentSummary,
   DocumentView,
@@ -34,6 +36,8 @@ export class Refusal extends Error {
     readonly answeredBy: string | null = null,
     /** From when until when a request could be met instead (the building's clock, seconds). */
     readonly nextPossible: readonly number[] | null = null,
+    /** Why a request cannot be met. */
+    readonly why: string | null = null,
   ) {
     super(errors.length > 0 ? errors.join("\n") : detail);
   }
@@ -87,8 +91,8 @@ async function read(path: string): Promise<Response> {
 async function refusal(response: Response): Promise<Refusal> {
   const problem = (await response.json().catch(() => null)) as ProblemDocument | null;
   if (problem === null) return new Refusal(response.status, response.statusText);
-  const { detail, errors, answered_by, next_possible_s } = problem;
-  return new Refusal(response.status, detail, errors ?? [], answered_by ?? null, next_possible_s ?? null);
+  const { detail, errors, answered_by, next_possible_s, why } = problem;
+  return new Refusal(response.status, detail, errors ?? [], answered_by ?? null, next_possible_s ?? null, why ?? null);
 }
 
 const segment = encodeURIComponent;
@@ -165,6 +169,11 @@ const atSite = (site: string, name = "") =>
 export const requests = (site: string) => call<RequestView[]>("GET", atSite(site));
 export const makeRequest = (site: string, request: object) => call<RequestView>("POST", atSite(site), request);
 export const cancelRequest = (site: string, name: string) => call<void>("DELETE", atSite(site, name));
+/** What somebody asks for in words, at the touch screen of a robot if there is one, at HH:MM. */
+export const understandRequest = (site: string, words: string, robot: string | null, clock: string) =>
+  call<UnderstoodView>("POST", `/api/requests/understand?site=${segment(site)}`, { words, robot, clock });
+export const askedRobot = (site: string, robot: string) =>
+  call<AskedRobotView>("GET", `/api/sites/${segment(site)}/fleet/robots/${segment(robot)}/asking`);
 export const fleet = (site: string) => call<FleetView>("GET", `/api/sites/${segment(site)}/fleet`);
 export const sites = () => call<SiteView[]>("GET", "/api/sites");
 export const worlds = () => call<WorldView[]>("GET", "/api/worlds");

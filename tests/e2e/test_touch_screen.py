@@ -1,0 +1,119 @@
+"""Somebody stands at a robot's touch screen, asks it for something, and follows that."""
+
+import pytest
+from console_in_browser import OpenPage
+from office_with_fleet import open_office_with_fleet
+from playwright.async_api import Page, expect
+
+from mend.server.composition import Service
+
+# One event loop for all tests of the console, and so one browser.
+pytestmark = pytest.mark.asyncio(loop_scope="session")
+
+LONG_MS = 60_000
+LARGE_PX = 64
+
+
+async def at_robot(service: Service, open_page: OpenPage, *, floors: int = 1) -> Page:
+    """The touch screen of the first robot of an office."""
+    site = await open_office_with_fleet(service, floors=floors)
+    robot = next(iter((await service.fleets.fleet(site)).dispatcher.fleet.robots))
+    page = await open_page(f"/robots/{robot}/ask")
+    await expect(page.get_by_text("What may I do for you?")).to_be_visible(timeout=LONG_MS)
+    return page
+
+
+async def press(page: Page, name: str) -> None:
+    await page.get_by_role("button", name=name, exact=True).click()
+
+
+async def test_a_thing_is_brought_by_pressing_buttons_alone(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await at_robot(service, open_page)
+    await press(page, "Bring something somewhere")
+    await press(page, "This, which I have here")
+    await press(page, "F1 103")
+    await press(page, "F1 106")
+    await expect(
+        page.get_by_role("heading", name="I am to bring this from F1 103 to F1 106")
+    ).to_be_focused()
+    await press(page, "Yes, that is right")
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("is expected to be done with it in about")
+    await press(page, "Cancel it")
+    await expect(mine).to_contain_text("Cancelled")
+    await press(page, "Ask for something else")
+    await expect(page.get_by_text("What may I do for you?")).to_be_visible()
+
+
+async def test_a_room_is_found_by_its_floor_and_number(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await at_robot(service, open_page, floors=2)
+    await press(page, "Come to a room")
+    await press(page, "F2")
+    for digit in "203":
+        await press(page, digit)
+    await expect(page.get_by_role("button", name="F2 201")).to_be_hidden()
+    await press(page, "F2 203")
+    await expect(page.get_by_text("I am to come to F2 203. Is that right?")).to_be_visible()
+    await press(page, "No")
+    await expect(page.get_by_text("What may I do for you?")).to_be_visible()
+    assert (await service.fleets.requests(None)) == []
+
+
+async def test_what_is_said_in_words_is_asked_back_read_back_and_done(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await at_robot(service, open_page, floors=2)
+    words = page.get_by_label("Say it in words")
+    await words.fill("come to the hall")
+    await press(page, "Say it")
+    await expect(page.get_by_role("alert").filter(has_text="the hall")).to_be_visible()
+    await words.fill("tell two oh three that lunch is ready")
+    await press(page, "Say it")
+    await expect(page.get_by_text('I am to tell F2 203 that "lunch is ready".')).to_be_visible()
+    await press(page, "Yes, that is right")
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("Tell “lunch is ready” at F2/203")
+
+
+async def test_what_cannot_be_met_says_why_and_offers_the_next_time(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await at_robot(service, open_page, floors=2)
+    await page.get_by_label("Say it in words").fill("go to F2 206 within 1 minute")
+    await press(page, "Say it")
+    await press(page, "Yes, that is right")
+    await expect(page.get_by_text("That cannot be done by then.")).to_be_visible()
+    await page.get_by_role("button", name="instead").click()
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("Come to F2/206", timeout=LONG_MS)
+
+
+async def test_every_button_is_large(service: Service, open_page: OpenPage) -> None:
+    page = await at_robot(service, open_page, floors=2)
+    await press(page, "Come to a room")
+    for button in await page.get_by_role("button").all():
+        box = await button.bounding_box()
+        assert box is not None
+        assert min(box["width"], box["height"]) >= LARGE_PX, await button.inner_text()
+
+
+async def test_whoever_goes_away_leaves_the_start_to_who_comes_next(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await at_robot(service, open_page)
+    await page.clock.install()
+    await press(page, "Come to a room")
+    await page.clock.fast_forward("02:00")
+    await expect(page.get_by_text("What may I do for you?")).to_be_visible()
+
+
+async def test_a_robot_that_is_not_there_is_said_to_be_none(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service)
+    page = await open_page("/robots/nobody/ask")
+    await expect(page.get_by_text("No robot called nobody takes requests here.")).to_be_visible()

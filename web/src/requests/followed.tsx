@@ -1,0 +1,56 @@
+// How far one request is and when it is expected to be done, for who has asked for it.
+import { useState } from "preact/hooks";
+import { robotName } from "../question/fault_words";
+import { may } from "../state/access";
+import * as rest from "../wire/rest";
+import type { RequestView } from "../wire/types";
+import { isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "./request_words";
+import { type SiteClock, when } from "./when";
+
+interface FollowedProps {
+  request: RequestView;
+  clock: SiteClock;
+  changed: () => void;
+}
+
+export function Followed({ request, clock, changed }: FollowedProps) {
+  const [failure, setFailure] = useState("");
+  const cancel = () =>
+    rest.cancelRequest(request.site, request.name).then(changed, (error: Error) => setFailure(error.message));
+  const { status, reason } = request;
+  return (
+    <section class="panel followed" aria-label="Your request">
+      <h2>{wanted(request)}</h2>
+      <p role="status">
+        <span class={`badge request-${status}`}>
+          <span aria-hidden="true">{STATUS_SIGNS[status]}</span>
+          {STATUS_WORDS[status]}
+        </span>
+      </p>
+      <p>{soon(request, clock)}</p>
+      {reason !== null && <p class="small">{reason.charAt(0).toUpperCase() + reason.slice(1)}.</p>}
+      <p class="mistake" role="alert">
+        {failure}
+      </p>
+      {!isOver(request) && status !== "returning" && may("helper") && (
+        <button class="button" type="button" onClick={() => void cancel()}>
+          Cancel it
+        </button>
+      )}
+    </section>
+  );
+}
+
+/** Who does it, and when it is expected to be done. */
+export function soon(request: RequestView, clock: SiteClock): string {
+  const { expected, status } = request;
+  if (isOver(request)) return OVER[status] ?? "";
+  if (expected === null) return "When it will be done is not known yet.";
+  return `${robotName(expected.robot)} is expected to be done with it ${when(expected.done_s, clock, new Date())}.`;
+}
+
+const OVER: Partial<Record<RequestView["status"], string>> = {
+  done: "It is done.",
+  cancelled: "It is wanted no more.",
+  failed: "It was not done.",
+};

@@ -1,0 +1,61 @@
+// Asking in words: what was understood is read back, and asked for once somebody has said yes.
+import { useId, useState } from "preact/hooks";
+import * as rest from "../wire/rest";
+import type { RequestDocument } from "./use_asking";
+import { timeOf } from "./when";
+
+interface InWordsProps {
+  site: string;
+  /** At whose touch screen; null anywhere else. */
+  robot: string | null;
+  example: string;
+  /** Both from the service: what it has understood, and how it reads that back. */
+  understood: (request: RequestDocument, readBack: string) => void;
+}
+
+const LONGEST = 500;
+
+export function InWords({ site, robot, example, understood }: InWordsProps) {
+  const id = useId();
+  const [words, setWords] = useState("");
+  const [question, setQuestion] = useState("");
+  const [busy, setBusy] = useState(false);
+  const say = async (event: SubmitEvent) => {
+    event.preventDefault();
+    if (words.trim() === "") return;
+    setBusy(true);
+    try {
+      const found = await rest.understandRequest(site, words, robot, timeOf(new Date()));
+      setQuestion(found.question ?? "");
+      if (found.request !== null && found.read_back !== null) {
+        setWords("");
+        understood(found.request, found.read_back);
+      }
+    } catch (error) {
+      setQuestion(error instanceof Error ? error.message : String(error));
+    } finally {
+      setBusy(false);
+    }
+  };
+  return (
+    <form class="in-words" onSubmit={(event) => void say(event)}>
+      <label for={id}>Say it in words, such as “{example}”</label>
+      <div>
+        <input
+          id={id}
+          class="input"
+          autocomplete="off"
+          maxLength={LONGEST}
+          value={words}
+          onInput={(event) => setWords(event.currentTarget.value)}
+        />
+        <button class="button" disabled={busy || words.trim() === ""}>
+          Say it
+        </button>
+      </div>
+      <p class="mistake" role="alert">
+        {question}
+      </p>
+    </form>
+  );
+}

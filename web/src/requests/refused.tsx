@@ -1,0 +1,30 @@
+// Why something cannot be done as it is asked for, and when it could be.
+import type { Asking, RequestDocument } from "./use_asking";
+import { type SiteClock, when } from "./when";
+
+interface RefusedProps {
+  refused: Extract<Asking, { phase: "refused" }>;
+  clock: SiteClock;
+  ask: (request: RequestDocument) => void;
+}
+
+export function Refused({ refused: { request, why, by }, clock, ask }: RefusedProps) {
+  return (
+    <div class="refused">
+      <div role="alert">
+        <p class="mistake">{by === null ? "That cannot be done." : "That cannot be done by then."}</p>
+        <p class="small">{asSentence(why)}</p>
+      </div>
+      {by !== null && (
+        <button class="button primary" type="button" onClick={() => ask({ ...request, latest_s: by })}>
+          Ask for it {when(by, clock, new Date())} instead
+        </button>
+      )}
+    </div>
+  );
+}
+
+function asSentence(why: string): string {
+  const text = why.charAt(0).toUpperCase() + why.slice(1);
+  return /[.?!]$/.test(text) ? text : `${text}.`;
+}

@@ -1,0 +1,29 @@
+// Moments of a building's clock, as people say them by their own.
+import { within } from "./request_words";
+
+/** A building's clock: what it shows (seconds), and how fast it goes beside people's. */
+export interface SiteClock {
+  now: number;
+  speed: number | "max";
+}
+
+const SOON_S = 90 * 60;
+
+/** "in about 4 minutes, at 14:35"; without the time of day where the building's clock just runs on. */
+export function when(moment_s: number, { now, speed }: SiteClock, today: Date): string {
+  if (speed === "max") return within(moment_s - now);
+  const left_s = Math.max(0, (moment_s - now) / speed);
+  const then = new Date(today.getTime() + 1000 * left_s);
+  const at = `at ${timeOf(then)}`;
+  if (left_s < SOON_S) return `${within(left_s)}, ${at}`;
+  return then.toDateString() === today.toDateString() ? at : `on ${WEEKDAYS[then.getDay()]} ${at}`;
+}
+
+const WEEKDAYS = ["Sunday", "Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday"];
+
+/** As on a clock of 24 hours. */
+export function timeOf(moment: Date): string {
+  return `${two(moment.getHours())}:${two(moment.getMinutes())}`;
+}
+
+const two = (number: number) => String(number).padStart(2, "0");

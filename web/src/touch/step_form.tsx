@@ -1,0 +1,87 @@
+// One thing that is asked at a robot's touch screen: a text, or a place.
+import { useEffect, useId, useRef, useState } from "preact/hooks";
+import type { Kind } from "../requests/wish";
+import { PlacePad } from "./place_pad";
+import { type Asked, nextStep, type Step } from "./steps";
+
+interface StepFormProps {
+  asked: Asked;
+  places: readonly string[];
+  here: string | null;
+  answered: (asked: Asked) => void;
+}
+
+export function StepForm({ asked, places, here, answered }: StepFormProps) {
+  const step = nextStep(asked);
+  const heading = useRef<HTMLHeadingElement>(null);
+  useEffect(() => heading.current?.focus(), [step]);
+  if (step === null) return null;
+  const answer = (value: string) => answered({ ...asked, answers: [...asked.answers, value] });
+  const isText = step === "what" || step === "message";
+  return (
+    <>
+      <h2 ref={heading} tabIndex={-1}>
+        {questionOf(step, asked.kind)}
+      </h2>
+      {isText && <TextAnswer key={step} step={step} answer={answer} />}
+      {!isText && (
+        <PlacePad
+          key={step}
+          places={step === "destination" && asked.kind === "transport" ? places.filter((each) => each !== asked.answers[1]) : places}
+          here={step === "origin" || step === "place" ? here : null}
+          floor={here === null ? null : here.slice(0, here.indexOf("/"))}
+          choose={answer}
+        />
+      )}
+    </>
+  );
+}
+
+function questionOf(step: Step, kind: Kind): string {
+  switch (step) {
+    case "what":
+      return "What am I to bring?";
+    case "message":
+      return "What am I to tell?";
+    case "origin":
+      return "From where?";
+    case "destination":
+      return "To where?";
+    case "place":
+      return kind === "deliver_message" ? "Where am I to tell it?" : "Where am I to come?";
+  }
+}
+
+const LONGEST = 300;
+
+function TextAnswer({ step, answer }: { step: "what" | "message"; answer: (text: string) => void }) {
+  const id = useId();
+  const [text, setText] = useState("");
+  return (
+    <form
+      class="touch-text"
+      onSubmit={(event) => {
+        event.preventDefault();
+        if (text.trim() !== "") answer(text.trim());
+      }}
+    >
+      {step === "what" && (
+        <button class="button touch-button" type="button" onClick={() => answer("this")}>
+          This, which I have here
+        </button>
+      )}
+      <label for={id}>{step === "what" ? "Or something else, such as “the mail”" : "The message, as it is to be told"}</label>
+      <input
+        id={id}
+        class="input"
+        autocomplete="off"
+        maxLength={LONGEST}
+        value={text}
+        onInput={(event) => setText(event.currentTarget.value)}
+      />
+      <button class="button touch-button primary" disabled={text.trim() === ""}>
+        Go on
+      </button>
+    </form>
+  );
+}

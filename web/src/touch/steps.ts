@@ -1,0 +1,52 @@
+// What is asked one after the other at a robot's touch screen, and the wish that comes of it.
+import { said } from "../requests/places";
+import { type Kind, NO_WISH, type Wish } from "../requests/wish";
+
+export type Step = "what" | "message" | "origin" | "destination" | "place";
+
+export interface Asked {
+  kind: Kind;
+  /** One for each step so far. */
+  answers: readonly string[];
+}
+
+const STEPS: Readonly<Record<Kind, readonly Step[]>> = {
+  transport: ["what", "origin", "destination"],
+  deliver_message: ["message", "place"],
+  go_to_room: ["place"],
+  escort: ["destination"],
+};
+
+/** Whom robots call somebody who has not said their name. */
+export const WHOEVER_ASKED = "whoever asked";
+
+/** What is to be asked next; null where all is known. */
+export function nextStep({ kind, answers }: Asked): Step | null {
+  return STEPS[kind][answers.length] ?? null;
+}
+
+/** The wish, once all is known; `here` is where the robot stands. */
+export function wishOf({ kind, answers }: Asked, here: string | null): Wish {
+  const known = Object.fromEntries(STEPS[kind].map((step, at) => [step, answers[at] ?? ""]));
+  const more = kind === "escort" ? { person: WHOEVER_ASKED, origin: here ?? "" } : {};
+  return { ...NO_WISH, kind, ...more, ...known };
+}
+
+/** The sentence that asks whether a wish is right. */
+export function readBackOf(wish: Wish): string {
+  return `I am to ${deedOf(wish)}. Is that right?`;
+}
+
+function deedOf({ kind, what, message, person, origin, destination, place }: Wish): string {
+  const way = `from ${said(origin)} to ${said(destination)}`;
+  switch (kind) {
+    case "transport":
+      return `bring ${what} ${way}`;
+    case "escort":
+      return person === WHOEVER_ASKED ? `show you the way ${way}` : `show ${person} the way ${way}`;
+    case "deliver_message":
+      return `tell ${said(place)} that “${message}”`;
+    case "go_to_room":
+      return `come to ${said(place)}`;
+  }
+}

@@ -1,0 +1,149 @@
+// A robot's touch screen: large buttons for what may be asked, read back, asked for and followed.
+import { useState } from "preact/hooks";
+import { Connection } from "../app/header";
+import { robotName } from "../question/fault_words";
+import { Confirming } from "../requests/confirming";
+import { Followed } from "../requests/followed";
+import { InWords } from "../requests/in_words";
+import { Refused } from "../requests/refused";
+import { fleets } from "../requests/fleets";
+import { said } from "../requests/places";
+import { useAsking, type RequestDocument } from "../requests/use_asking";
+import { useRequests } from "../requests/use_requests";
+import { isOver, wanted } from "../requests/request_words";
+import { type Kind, newName, requestOf } from "../requests/wish";
+import { may, whyNot } from "../state/access";
+import { soundOn } from "../state/preferences";
+import type { AskedRobotView, SiteView } from "../wire/types";
+import { useSaidAloud } from "./said_aloud";
+import { StepForm } from "./step_form";
+import { type Asked, nextStep, readBackOf, wishOf } from "./steps";
+import { useIdle } from "./use_idle";
+import { useRobot } from "./use_robot";
+import "../requests/requests.css";
+import "./touch.css";
+
+const DEEDS: readonly (readonly [Kind, string])[] = [
+  ["transport", "Bring something somewhere"],
+  ["deliver_message", "Tell somebody something"],
+  ["escort", "Show me the way"],
+  ["go_to_room", "Come to a room"],
+];
+const IDLE_MS = 90_000;
+
+export function TouchView({ robot: name }: { robot: string }) {
+  const { site, robot, failure } = useRobot(name);
+  return (
+    <section class="page touch">
+      <div class="touch-head">
+        <h1>{robotName(name)}</h1>
+        {robot?.here != null && <p class="quiet">I am at {said(robot.here)}.</p>}
+        <Connection />
+        <button
+          class="button"
+          type="button"
+          aria-pressed={soundOn.value}
+          onClick={() => (soundOn.value = !soundOn.value)}
+        >
+          Read aloud
+        </button>
+      </div>
+      <p class="mistake" role="alert">
+        {failure}
+      </p>
+      {fleets.value !== null && site === null && <p>No robot called {name} takes requests here.</p>}
+      {!may("helper") && <p class="quiet">{whyNot("Asking for something", "helper")}</p>}
+      {may("helper") && site !== null && robot !== null && <AtRobot site={site} robot={robot} />}
+    </section>
+  );
+}
+
+interface ToConfirm {
+  request: RequestDocument;
+  readBack: string;
+}
+
+function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
+  const { asking, ask, forget } = useAsking(site.id);
+  const { requests, fleet, again } = useRequests(site.id);
+  const [asked, setAsked] = useState<Asked | null>(null);
+  const [confirmed, setConfirmed] = useState<ToConfirm | null>(null);
+  const back = () => {
+    forget();
+    setAsked(null);
+    setConfirmed(null);
+  };
+  const booked = asking.phase === "booked" ? requests?.find(({ name }) => name === asking.name) : undefined;
+  const goesOn = asking.phase === "booked" && (booked === undefined || !isOver(booked));
+  useIdle((asked !== null || confirmed !== null) && !goesOn, IDLE_MS, back);
+  useSaidAloud(heard(asking.phase, confirmed?.readBack ?? "", booked === undefined ? "" : wanted(booked)));
+  if (fleet === null) return <p class="quiet">Loading …</p>;
+  const clock = { now: fleet.now_s, speed: site.speed };
+  const answer = (next: Asked) => {
+    setAsked(next);
+    if (nextStep(next) !== null) return;
+    const wish = wishOf(next, robot.here);
+    setConfirmed({ request: requestOf(wish, fleet.now_s, newName()), readBack: readBackOf(wish) });
+  };
+  const isStart = asked === null && confirmed === null;
+  return (
+    <>
+      {isStart && <Start robot={robot} choose={(kind) => setAsked({ kind, answers: [] })} />}
+      {isStart && (
+        <InWords
+          site={site.id}
+          robot={robot.robot}
+          example={exampleFor(fleet.places, robot.here)}
+          understood={(request, readBack) => setConfirmed({ request, readBack })}
+        />
+      )}
+      {asked !== null && confirmed === null && (
+        <StepForm asked={asked} places={fleet.places} here={robot.here} answered={answer} />
+      )}
+      {confirmed !== null && (asking.phase === "nothing" || asking.phase === "sending") && (
+        <Confirming
+          readBack={confirmed.readBack}
+          busy={asking.phase === "sending"}
+          yes={() => void ask(confirmed.request).then(again)}
+          no={back}
+        />
+      )}
+      {asking.phase === "refused" && <Refused refused={asking} clock={clock} ask={(request) => void ask(request).then(again)} />}
+      {asking.phase === "booked" && booked === undefined && <p>It is booked.</p>}
+      {booked !== undefined && <Followed request={booked} clock={clock} changed={again} />}
+      {!isStart && (
+        <button class="button touch-button" type="button" onClick={back}>
+          {asking.phase === "booked" ? "Ask for something else" : "Start over"}
+        </button>
+      )}
+    </>
+  );
+}
+
+function Start({ robot, choose }: { robot: AskedRobotView; choose: (kind: Kind) => void }) {
+  const offered = DEEDS.filter(([kind]) => robot.kinds.includes(kind) && (kind !== "escort" || robot.here !== null));
+  return (
+    <>
+      <h2>What may I do for you?</h2>
+      <div class="touch-deeds">
+        {offered.map(([kind, name]) => (
+          <button key={kind} class="button touch-button" type="button" onClick={() => choose(kind)}>
+            {name}
+          </button>
+        ))}
+      </div>
+    </>
+  );
+}
+
+function heard(phase: string, readBack: string, done: string): string {
+  if (phase === "booked") return done === "" ? "" : `All right. ${done}.`;
+  if (phase === "refused") return "That cannot be done by then.";
+  return readBack;
+}
+
+/** A sentence about a place that is there. */
+function exampleFor(places: readonly string[], here: string | null): string {
+  const other = places.find((place) => place !== here);
+  return other === undefined ? "come here" : `bring this to ${said(other)}`;
+}
