@@ -27,6 +27,7 @@ from mend.server.documents import (
     ScenarioSummary,
     SceneSummary,
 )
+from mend.server.fleets.asking import AskedRobotView, UnderstoodView, WordsAsked
 from mend.server.fleets.operator_requests import WayFound
 from mend.server.fleets.views import FleetView, RequestView
 from mend.server.journal.events import (
@@ -308,6 +309,19 @@ class MendClient:
         path = _at_site(f"/api/requests/{name}", site)
         sent = await self._request("PUT", path, json=request.model_dump(mode="json"))
         return RequestView.model_validate_json(sent.content)
+
+    async def understand_request(
+        self, asked: WordsAsked, site: UUID | None = None
+    ) -> UnderstoodView:
+        """What somebody asks for in words, as a request to be made once they have confirmed it."""
+        path = _at_site("/api/requests/understand", site)
+        return await self._post(path, UnderstoodView, asked.model_dump(mode="json"))
+
+    async def asked_robot(self, site: UUID, robot: str) -> AskedRobotView:
+        """Where a robot of a fleet is, and what it may be asked for."""
+        return await self._get(
+            f"/api/sites/{site}/fleet/robots/{quote(robot)}/asking", AskedRobotView
+        )
 
     async def cancel_request(self, name: str, site: UUID | None = None) -> None:
         """Want it no more; what is fetched goes back to where it came from."""

@@ -61,8 +61,8 @@ SOON = {"Retry-After": "1"}
 class Problem(BaseModel):
     """Why a request was refused. `answered_by` on a lost race, `errors` one per mistake.
 
-    `not_connected`: the robots that are to come before it can be done. `why`: what keeps a request from
-    being met; `next_possible_s`: from when until when it could be.
+    `not_connected`: the robots that are to come before it can be done. `why`: what
+    keeps a request from being met; `next_possible_s`: from when until when it could be.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)

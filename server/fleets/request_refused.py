@@ -9,7 +9,8 @@ if TYPE_CHECKING:
 
 
 class RequestRefusedError(ConflictError):
-    """`why`: without its name; `next_possible_s`: from when until when it could be met just now; None at no time."""
+    """`why`: without its name; `next_possible_s`: from when until when it could be met just now;
+    None at no time."""
 
     def __init__(self, name: str, answer: "Answer") -> None:
         window = answer.next_possible

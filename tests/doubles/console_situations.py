@@ -267,6 +267,48 @@ async def sign_in(_: Service, open_page: OpenPage) -> Page:
 
 Situation = Callable[[Service, OpenPage], Awaitable[Page]]
 
+
+async def touch_screen(service: Service, open_page: OpenPage) -> Page:
+    """The start of a robot's touch screen, after words that it has not understood."""
+    site = await open_office_with_fleet(service, floors=2)
+    robot = next(iter((await service.fleets.fleet(site)).dispatcher.fleet.robots))
+    page = await open_page(f"/robots/{robot}/ask")
+    await page.get_by_label("Say it in words").fill("go to the moon", timeout=PATIENCE_MS)
+    await page.get_by_role("button", name="Say it").click()
+    await expect(page.get_by_role("alert").filter(has_text="the moon")).to_be_visible()
+    return page
+
+
+async def touch_place(service: Service, open_page: OpenPage) -> Page:
+    """A room is being chosen there."""
+    page = await touch_screen(service, open_page)
+    await page.get_by_role("button", name="Come to a room").click()
+    await page.get_by_role("button", name="F2", exact=True).click()
+    await page.get_by_role("button", name="2", exact=True).click()
+    return page
+
+
+async def touch_refused(service: Service, open_page: OpenPage) -> Page:
+    """Something is wanted there too soon, and offered for later."""
+    page = await touch_screen(service, open_page)
+    await page.get_by_label("Say it in words").fill("come to F2 206 within 1 minute")
+    await page.get_by_role("button", name="Say it").click()
+    await page.get_by_role("button", name="Yes, that is right").click()
+    await expect(page.get_by_role("button", name="instead")).to_be_visible(timeout=PATIENCE_MS)
+    return page
+
+
+async def booked_request(service: Service, open_page: OpenPage) -> Page:
+    """Something was asked for on the booking page, and is followed."""
+    await open_office_with_fleet(service)
+    page = await open_page("/requests")
+    await page.get_by_label("Have a robot come").check(timeout=PATIENCE_MS)
+    await page.get_by_label("Where").fill("106")
+    await page.get_by_role("button", name="Ask for it").click()
+    await expect(page.get_by_role("region", name="Your request")).to_be_visible()
+    return page
+
+
 SITUATIONS: dict[str, Situation] = {
     each.__name__: each
     for each in (
@@ -285,6 +327,10 @@ SITUATIONS: dict[str, Situation] = {
         delete_tree,
         start_run,
         requests,
+        booked_request,
+        touch_screen,
+        touch_place,
+        touch_refused,
         settings,
         unknown,
         sign_in,

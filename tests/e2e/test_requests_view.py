@@ -1,5 +1,7 @@
 """People ask robots of a building for something in the console, and follow it to its end."""
 
+import time
+
 import pytest
 from console_in_browser import OpenPage
 from office_with_fleet import open_office_with_fleet
@@ -11,6 +13,7 @@ from mend.server.composition import Service
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 LONG_MS = 60_000
+A_MINUTE_S = 60.0
 
 
 async def test_something_is_asked_for_and_followed_until_it_is_done(
@@ -55,6 +58,41 @@ async def test_what_cannot_be_met_in_time_is_offered_for_when_it_can(
     await page.get_by_role("button", name="instead").click()
     open_ones = page.get_by_role("list", name="Open requests")
     await expect(open_ones).to_contain_text("Tell “Lunch is ready.” at F1/106", timeout=LONG_MS)
+
+
+async def test_a_newcomer_asks_in_words_and_follows_it(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service, floors=2)
+    page = await open_page("/")
+    began_s = time.monotonic()
+    await page.get_by_role("link", name="Requests").click(timeout=LONG_MS)
+    words = page.get_by_label("Say it in words")
+    await words.press_sequentially("bring the mail to 203")
+    await words.press("Enter")
+    await expect(page.get_by_role("alert").filter(has_text="From where?")).to_be_visible()
+    await words.fill("bring the mail from 101 to two oh three")
+    await words.press("Enter")
+    await expect(
+        page.get_by_role("heading", name="I am to bring the mail from F1 101 to F2 203.")
+    ).to_be_focused()
+    await page.get_by_role("button", name="Yes, that is right").click()
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("Bring the mail from F1 101 to F2 203")
+    await expect(mine).to_contain_text("is expected to be done with it in about")
+    # On a machine without other work some 3 s; people take longer to read and to type.
+    assert time.monotonic() - began_s < A_MINUTE_S
+
+
+async def test_a_place_that_is_not_there_is_said_to_be_none(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service, floors=2)
+    page = await open_page("/requests")
+    await page.get_by_label("Have a robot come").check(timeout=LONG_MS)
+    await page.get_by_label("Where").fill("999")
+    await page.get_by_role("button", name="Ask for it", exact=True).click()
+    await expect(page.get_by_role("alert").filter(has_text="no place “999”")).to_be_visible()
 
 
 async def test_what_is_no_longer_wanted_is_cancelled(service: Service, open_page: OpenPage) -> None:

@@ -1,9 +1,10 @@
 """Somebody stands at a robot's touch screen, asks it for something, and follows that."""
 
 import pytest
-from console_in_browser import OpenPage
+from console_in_browser import OpenPage, settle
 from office_with_fleet import open_office_with_fleet
-from playwright.async_api import Page, expect
+from playwright.async_api import Page, ViewportSize, expect
+from test_accessibility import PHONE, RULES, load_axe, violations
 
 from mend.server.composition import Service
 
@@ -12,13 +13,16 @@ pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 LONG_MS = 60_000
 LARGE_PX = 64
+LANDSCAPE = ViewportSize(width=1280, height=800)
 
 
-async def at_robot(service: Service, open_page: OpenPage, *, floors: int = 1) -> Page:
+async def at_robot(
+    service: Service, open_page: OpenPage, *, floors: int = 1, **options: object
+) -> Page:
     """The touch screen of the first robot of an office."""
     site = await open_office_with_fleet(service, floors=floors)
     robot = next(iter((await service.fleets.fleet(site)).dispatcher.fleet.robots))
-    page = await open_page(f"/robots/{robot}/ask")
+    page = await open_page(f"/robots/{robot}/ask", **options)
     await expect(page.get_by_text("What may I do for you?")).to_be_visible(timeout=LONG_MS)
     return page
 
@@ -99,6 +103,30 @@ async def test_every_button_is_large(service: Service, open_page: OpenPage) -> N
         box = await button.bounding_box()
         assert box is not None
         assert min(box["width"], box["height"]) >= LARGE_PX, await button.inner_text()
+
+
+@pytest.mark.parametrize("size", [PHONE, LANDSCAPE], ids=["phone", "1280x800"])
+async def test_axe_finds_nothing_on_the_way_through_it(
+    service: Service, open_page: OpenPage, size: ViewportSize
+) -> None:
+    page = await at_robot(service, open_page, floors=2, viewport=size)
+    await load_axe(page)
+    await require_clean(page)
+    for button in ("Bring something somewhere", "This, which I have here", "F1 103", "F1 106"):
+        await press(page, button)
+        await require_clean(page)
+    await press(page, "Yes, that is right")
+    await expect(page.get_by_role("region", name="Your request")).to_be_visible()
+    await require_clean(page)
+
+
+async def require_clean(page: Page) -> None:
+    """Nothing is wrong, light and dark, and nothing sticks out."""
+    for theme, rules in RULES.items():
+        await page.emulate_media(color_scheme=theme)
+        await settle(page)
+        assert await violations(page, rules) == [], theme
+    assert await page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
 
 
 async def test_whoever_goes_away_leaves_the_start_to_who_comes_next(

@@ -8,10 +8,17 @@ import pytest
 from office_with_fleet import open_office_with_fleet
 
 from mend.errors import NotFoundError, WrongInputError
-from mend.fleet.requests import DeliverMessage, GoToRoom, RequestStatus, Transport
+from mend.fleet.requests import (
+    DeliverMessage,
+    GoToRoom,
+    RequestStatus,
+    Transport,
+    request_of,
+)
 from mend.server.client import MendClient
 from mend.server.client_errors import RefusedError
 from mend.server.composition import Service, open_service
+from mend.server.fleets.asking import WordsAsked
 from mend.server.journal import events as ev
 from mend.server.journal.stored_event import read_event
 from mend.server.journal.subscriptions import Record
@@ -184,3 +191,54 @@ async def test_a_site_without_a_fleet_takes_no_requests(tmp_path: Path) -> None:
             await service.fleets.submit(None, GoToRoom(name="there", place="101"), None)
         with pytest.raises(WrongInputError, match="'fleet' is for the robots of a building"):
             await service.sites.open_site(SiteRequest(scene="eket", fleet=FleetOptions()))
+
+
+@pytest.mark.slow(10)
+async def test_words_are_understood_read_back_and_asked_for_over_rest(tmp_path: Path) -> None:
+    async with (
+        open_service(settings(tmp_path)) as service,
+        MendClient(service.url) as client,
+        asyncio.timeout(PATIENCE_S),
+    ):
+        site = await open_office_with_fleet(service, 2.0, floors=2)
+        robot = (await client.fleet(site)).robots[0].robot
+        there = await client.asked_robot(site, robot)
+        assert there.here is not None
+        assert {"transport", "deliver_message", "go_to_room"} <= set(there.kinds)
+
+        words = "bring this to two oh three by three o'clock"
+        asked = WordsAsked(words=words, robot=robot, clock="14:20")
+        found = await client.understand_request(asked)
+        said = there.here.replace("/", " ")
+        assert (
+            found.read_back == f"I am to bring this from {said} to F2 203 by 15:00. Is that right?"
+        )
+        assert found.request is not None
+        # Its clock goes twice as fast as that of people.
+        assert found.request["latest_s"] == pytest.approx(2 * 40 * 60.0, abs=5.0)
+        booked = await client.make_request(request_of(found.request))
+        assert (booked.status, booked.what["destination"]) == ("booked", "F2/203")
+
+        unclear = await client.understand_request(WordsAsked(words="bring this to 203"))
+        assert unclear.question == "From where? Name a room, as I do not know where you are."
+        assert (unclear.request, unclear.read_back) == (None, None)
+        timeless = await client.understand_request(WordsAsked(words="come to 203 by 15:30"))
+        assert timeless.question is not None
+        assert timeless.question.startswith("I do not know how late it is")
+        with pytest.raises(RefusedError, match="nobody"):
+            await client.understand_request(WordsAsked(words="come here", robot="nobody"))
+
+
+@pytest.mark.slow(10)
+async def test_a_refusal_says_why_without_the_name(tmp_path: Path) -> None:
+    async with (
+        open_service(settings(tmp_path)) as service,
+        MendClient(service.url) as client,
+        asyncio.timeout(PATIENCE_S),
+    ):
+        await open_office_with_fleet(service, "max")
+        with pytest.raises(RefusedError) as refused:
+            await client.make_request(GoToRoom(name="soon", place="106", latest_s=1.0))
+        problem = refused.value.problem
+        assert problem.why is not None
+        assert problem.detail.startswith(f"'soon' cannot be met: {problem.why}")

@@ -1,9 +1,10 @@
 // How far one request is and when it is expected to be done, for who has asked for it.
-import { useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { robotName } from "../question/fault_words";
 import { may } from "../state/access";
 import * as rest from "../wire/rest";
 import type { RequestView } from "../wire/types";
+import { said } from "./places";
 import { isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "./request_words";
 import { type SiteClock, when } from "./when";
 
@@ -15,12 +16,16 @@ interface FollowedProps {
 
 export function Followed({ request, clock, changed }: FollowedProps) {
   const [failure, setFailure] = useState("");
+  const heading = useRef<HTMLHeadingElement>(null);
+  useEffect(() => heading.current?.focus(), [request.name]);
   const cancel = () =>
     rest.cancelRequest(request.site, request.name).then(changed, (error: Error) => setFailure(error.message));
   const { status, reason } = request;
   return (
     <section class="panel followed" aria-label="Your request">
-      <h2>{wanted(request)}</h2>
+      <h2 ref={heading} tabIndex={-1}>
+        {wanted(request, said)}
+      </h2>
       <p role="status">
         <span class={`badge request-${status}`}>
           <span aria-hidden="true">{STATUS_SIGNS[status]}</span>

@@ -13,8 +13,15 @@ export function Refused({ refused: { request, why, by }, clock, ask }: RefusedPr
     <div class="refused">
       <div role="alert">
         <p class="mistake">{by === null ? "That cannot be done." : "That cannot be done by then."}</p>
-        <p class="small">{asSentence(why)}</p>
+        {by !== null && <p>No robot gets it done before then beside what it has to do already.</p>}
+        {by === null && <p>{asSentence(why)}</p>}
       </div>
+      {by !== null && (
+        <details class="small">
+          <summary>Why not</summary>
+          <p>{asSentence(why)}</p>
+        </details>
+      )}
       {by !== null && (
         <button class="button primary" type="button" onClick={() => ask({ ...request, latest_s: by })}>
           Ask for it {when(by, clock, new Date())} instead

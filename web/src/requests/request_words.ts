@@ -31,18 +31,19 @@ export function isOver({ status }: RequestView): boolean {
   return OVER.has(status);
 }
 
-/** What somebody wants, in a sentence. */
-export function wanted({ what }: RequestView): string {
+/** What somebody wants, in a sentence; `named` says how places are called. */
+export function wanted({ what }: RequestView, named = (place: string) => place): string {
   const said = (field: string) => String(what[field] ?? "");
+  const at = (field: string) => named(said(field));
   switch (what.kind) {
     case "transport":
-      return `Bring ${said("what")} from ${said("origin")} to ${said("destination")}`;
+      return `Bring ${said("what")} from ${at("origin")} to ${at("destination")}`;
     case "deliver_message":
-      return `Tell “${said("message")}” at ${said("place")}`;
+      return `Tell “${said("message")}” at ${at("place")}`;
     case "escort":
-      return `Show ${said("person")} the way from ${said("origin")} to ${said("destination")}`;
+      return `Show ${said("person")} the way from ${at("origin")} to ${at("destination")}`;
     default:
-      return `Come to ${said("place")}`;
+      return `Come to ${at("place")}`;
   }
 }
 

@@ -114,7 +114,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
             <PlaceField label="Where" list={list} value={wish.place} onInput={(place) => fill({ place })} />
           )}
           <div class="field">
-            <label for="wish-within">Within (minutes), if it is urgent</label>
+            <label for="wish-within">Within minutes (optional)</label>
             <input
               id="wish-within"
               type="text"

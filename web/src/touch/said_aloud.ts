@@ -1,5 +1,5 @@
 // What a robot's touch screen shows is said, too, where the browser has a voice and sound is on.
-import { useEffect } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import { browserVoices, sayInBrowser } from "../speech/browser_voice";
 import { soundOn } from "../state/preferences";
 
@@ -12,4 +12,16 @@ export function useSaidAloud(text: string): void {
     void sayInBrowser(text, stop.signal).catch(() => undefined);
     return () => stop.abort();
   }, [text, on]);
+}
+
+/** Whether the browser has a voice; some come after the page. */
+export function useHasVoice(): boolean {
+  const [has, setHas] = useState(() => browserVoices().length > 0);
+  useEffect(() => {
+    if (!("speechSynthesis" in window)) return undefined;
+    const look = () => setHas(browserVoices().length > 0);
+    speechSynthesis.addEventListener("voiceschanged", look);
+    return () => speechSynthesis.removeEventListener("voiceschanged", look);
+  }, []);
+  return has;
 }

@@ -15,7 +15,7 @@ import { type Kind, newName, requestOf } from "../requests/wish";
 import { may, whyNot } from "../state/access";
 import { soundOn } from "../state/preferences";
 import type { AskedRobotView, SiteView } from "../wire/types";
-import { useSaidAloud } from "./said_aloud";
+import { useHasVoice, useSaidAloud } from "./said_aloud";
 import { StepForm } from "./step_form";
 import { type Asked, nextStep, readBackOf, wishOf } from "./steps";
 import { useIdle } from "./use_idle";
@@ -33,20 +33,18 @@ const IDLE_MS = 90_000;
 
 export function TouchView({ robot: name }: { robot: string }) {
   const { site, robot, failure } = useRobot(name);
+  const voices = useHasVoice();
   return (
     <section class="page touch">
       <div class="touch-head">
         <h1>{robotName(name)}</h1>
         {robot?.here != null && <p class="quiet">I am at {said(robot.here)}.</p>}
         <Connection />
-        <button
-          class="button"
-          type="button"
-          aria-pressed={soundOn.value}
-          onClick={() => (soundOn.value = !soundOn.value)}
-        >
-          Read aloud
-        </button>
+        {voices && (
+          <button class="button" type="button" aria-pressed={soundOn.value} onClick={() => (soundOn.value = !soundOn.value)}>
+            Read aloud
+          </button>
+        )}
       </div>
       <p class="mistake" role="alert">
         {failure}
@@ -76,7 +74,7 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
   const booked = asking.phase === "booked" ? requests?.find(({ name }) => name === asking.name) : undefined;
   const goesOn = asking.phase === "booked" && (booked === undefined || !isOver(booked));
   useIdle((asked !== null || confirmed !== null) && !goesOn, IDLE_MS, back);
-  useSaidAloud(heard(asking.phase, confirmed?.readBack ?? "", booked === undefined ? "" : wanted(booked)));
+  useSaidAloud(heard(asking.phase, confirmed?.readBack ?? "", booked === undefined ? "" : wanted(booked, said)));
   if (fleet === null) return <p class="quiet">Loading …</p>;
   const clock = { now: fleet.now_s, speed: site.speed };
   const answer = (next: Asked) => {
@@ -111,7 +109,7 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
       {asking.phase === "refused" && <Refused refused={asking} clock={clock} ask={(request) => void ask(request).then(again)} />}
       {asking.phase === "booked" && booked === undefined && <p>It is booked.</p>}
       {booked !== undefined && <Followed request={booked} clock={clock} changed={again} />}
-      {!isStart && (
+      {!isStart && !(confirmed !== null && asking.phase === "nothing") && (
         <button class="button touch-button" type="button" onClick={back}>
           {asking.phase === "booked" ? "Ask for something else" : "Start over"}
         </button>
