@@ -80,7 +80,7 @@ async def test_what_is_said_in_words_is_asked_back_read_back_and_done(
     await expect(page.get_by_text('I am to tell F2 203 that "lunch is ready".')).to_be_visible()
     await press(page, "Yes, that is right")
     mine = page.get_by_role("region", name="Your request")
-    await expect(mine).to_contain_text("Tell “lunch is ready” at F2/203")
+    await expect(mine).to_contain_text("Tell “lunch is ready” at F2 203")
 
 
 async def test_what_cannot_be_met_says_why_and_offers_the_next_time(
@@ -93,7 +93,7 @@ async def test_what_cannot_be_met_says_why_and_offers_the_next_time(
     await expect(page.get_by_text("That cannot be done by then.")).to_be_visible()
     await page.get_by_role("button", name="instead").click()
     mine = page.get_by_role("region", name="Your request")
-    await expect(mine).to_contain_text("Come to F2/206", timeout=LONG_MS)
+    await expect(mine).to_contain_text("Come to F2 206", timeout=LONG_MS)
 
 
 async def test_every_button_is_large(service: Service, open_page: OpenPage) -> None:

@@ -8,7 +8,7 @@ import type { RequestView, SiteView } from "../wire/types";
 import { fleets } from "./fleets";
 import { Followed } from "./followed";
 import { expectation, isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "./request_words";
-import { type RequestDocument, useAsking } from "./use_asking";
+import { followed, type RequestDocument, useAsking } from "./use_asking";
 import { useKinds } from "./use_kinds";
 import { useRequests } from "./use_requests";
 import { WishForm } from "./wish_form";
@@ -64,7 +64,7 @@ function OfSite({ site }: { site: SiteView }) {
   const { asking, ask, forget } = useAsking(site.id);
   const kinds = useKinds(site.id, fleet?.robots[0]?.robot);
   const clock = { now: fleet?.now_s ?? 0, speed: site.speed };
-  const mine = asking.phase === "booked" ? requests?.find(({ name }) => name === asking.name) : undefined;
+  const mine = followed(asking, requests);
   const askAndRead = (request: RequestDocument) => ask(request).then(again);
   const open = requests?.filter((each) => !isOver(each)) ?? [];
   const over = requests?.filter(isOver).reverse() ?? [];
@@ -73,7 +73,7 @@ function OfSite({ site }: { site: SiteView }) {
       <p class="mistake" role="alert">
         {failure}
       </p>
-      {mine !== undefined && <Followed request={mine} clock={clock} changed={again} />}
+      {mine !== null && <Followed request={mine} clock={clock} changed={again} />}
       {fleet !== null && may("helper") && (
         <WishForm fleet={fleet} kinds={kinds} clock={clock} asking={asking} ask={askAndRead} forget={forget} />
       )}

@@ -2,6 +2,7 @@
 import { useState } from "preact/hooks";
 import * as rest from "../wire/rest";
 import { Refusal } from "../wire/rest";
+import type { RequestView } from "../wire/types";
 
 export type RequestDocument = Readonly<Record<string, unknown>>;
 
@@ -10,7 +11,8 @@ export type Asking =
   | { phase: "sending" }
   /** `by`: when it could be met instead (the building's clock); null where that is never, or was not what kept it. */
   | { phase: "refused"; request: RequestDocument; why: string; by: number | null }
-  | { phase: "booked"; name: string };
+  /** `request` as it was booked. */
+  | { phase: "booked"; request: RequestView };
 
 export interface UseAsking {
   asking: Asking;
@@ -24,12 +26,20 @@ export function useAsking(site: string): UseAsking {
     setAsking({ phase: "sending" });
     setAsking(
       await rest.makeRequest(site, request).then(
-        ({ name }): Asking => ({ phase: "booked", name }),
+        (booked): Asking => ({ phase: "booked", request: booked }),
         (error: Error) => refusedBy(error, request),
       ),
     );
   };
   return { asking, ask, forget: () => setAsking({ phase: "nothing" }) };
+}
+
+/** What was booked, as far as it is known to have come; null where nothing was. */
+export function followed(asking: Asking, requests: readonly RequestView[] | null): RequestView | null {
+  if (asking.phase !== "booked") return null;
+  const { name } = asking.request;
+  // One that was refused before it was asked for otherwise has the same name.
+  return requests?.find((each) => each.name === name && each.status !== "refused") ?? asking.request;
 }
 
 function refusedBy(error: Error, request: RequestDocument): Asking {

@@ -39,7 +39,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
     if (wrong === "") await ask(requestOf(wanted.wish, fleet.now_s, newName()));
   };
   const busy = asking.phase === "sending";
-  const booked = asking.phase === "booked" ? asking.name : null;
+  const booked = asking.phase === "booked" ? asking.request.name : null;
   const [seen, setSeen] = useState<string | null>(null);
   if (booked !== seen) {
     // What is booked is not asked for once more by mistake.

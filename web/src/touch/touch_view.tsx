@@ -8,7 +8,7 @@ import { InWords } from "../requests/in_words";
 import { Refused } from "../requests/refused";
 import { fleets } from "../requests/fleets";
 import { said } from "../requests/places";
-import { useAsking, type RequestDocument } from "../requests/use_asking";
+import { followed, useAsking, type RequestDocument } from "../requests/use_asking";
 import { useRequests } from "../requests/use_requests";
 import { isOver, wanted } from "../requests/request_words";
 import { type Kind, newName, requestOf } from "../requests/wish";
@@ -71,10 +71,10 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
     setAsked(null);
     setConfirmed(null);
   };
-  const booked = asking.phase === "booked" ? requests?.find(({ name }) => name === asking.name) : undefined;
-  const goesOn = asking.phase === "booked" && (booked === undefined || !isOver(booked));
+  const booked = followed(asking, requests);
+  const goesOn = booked !== null && !isOver(booked);
   useIdle((asked !== null || confirmed !== null) && !goesOn, IDLE_MS, back);
-  useSaidAloud(heard(asking.phase, confirmed?.readBack ?? "", booked === undefined ? "" : wanted(booked, said)));
+  useSaidAloud(heard(asking.phase, confirmed?.readBack ?? "", booked === null ? "" : wanted(booked, said)));
   if (fleet === null) return <p class="quiet">Loading …</p>;
   const clock = { now: fleet.now_s, speed: site.speed };
   const answer = (next: Asked) => {
@@ -107,8 +107,7 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
         />
       )}
       {asking.phase === "refused" && <Refused refused={asking} clock={clock} ask={(request) => void ask(request).then(again)} />}
-      {asking.phase === "booked" && booked === undefined && <p>It is booked.</p>}
-      {booked !== undefined && <Followed request={booked} clock={clock} changed={again} />}
+      {booked !== null && <Followed request={booked} clock={clock} changed={again} />}
       {!isStart && !(confirmed !== null && asking.phase === "nothing") && (
         <button class="button touch-button" type="button" onClick={back}>
           {asking.phase === "booked" ? "Ask for something else" : "Start over"}
