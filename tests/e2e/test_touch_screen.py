@@ -1,5 +1,7 @@
 """Somebody stands at a robot's touch screen, asks it for something, and follows that."""
 
+import json
+
 import pytest
 from console_in_browser import OpenPage, settle
 from office_with_fleet import open_office_with_fleet
@@ -81,6 +83,44 @@ async def test_what_is_said_in_words_is_asked_back_read_back_and_done(
     await press(page, "Yes, that is right")
     mine = page.get_by_role("region", name="Your request")
     await expect(mine).to_contain_text("Tell “lunch is ready” at F2 203")
+
+
+# A browser that recognizes speech on its device: each time it hears the next of these.
+EAR = """(said) => {
+    window.SpeechRecognition = class extends EventTarget {
+        static available({ processLocally }) {
+            return Promise.resolve(processLocally ? "available" : "unavailable");
+        }
+        start() {
+            if (!this.processLocally) throw new Error("what is said leaves the device");
+            const transcript = said.shift();
+            const heard = Object.assign(new Event("result"), { results: [[{ transcript }]] });
+            if (transcript !== "") this.dispatchEvent(heard);
+            this.dispatchEvent(new Event("end"));
+        }
+        abort() {}
+    };
+}"""
+
+
+async def test_what_is_spoken_is_read_back_and_confirmed_by_voice(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await at_robot(service, open_page, floors=2)
+    await expect(page.get_by_role("button", name="Speak")).to_be_hidden()
+    said = ["", "come to two oh three", "perhaps", "Yes."]
+    await page.add_init_script(f"({EAR})({json.dumps(said)})")
+    await page.reload()
+    await press(page, "Speak")
+    await expect(page.get_by_text("I have heard nothing")).to_be_visible()
+    await press(page, "Speak")
+    await expect(page.get_by_text("I am to come to F2 203. Is that right?")).to_be_visible()
+    await press(page, "Say yes or no")
+    await expect(page.get_by_text("I have heard “perhaps”")).to_be_visible()
+    assert (await service.fleets.requests(None)) == []
+    await press(page, "Say yes or no")
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("Come to F2 203")
 
 
 async def test_what_cannot_be_met_says_why_and_offers_the_next_time(

@@ -1,5 +1,10 @@
 // What is read back to somebody, who says whether it is right.
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
+
+import { SpeakButton } from "./speak_button";
+
+const YES = ["yes", "yes please", "yes that is right", "yes that's right", "that is right", "that's right", "right"];
+const NO = ["no", "no thank you", "no thanks", "no that is wrong", "no that's wrong", "that is wrong", "wrong"];
 
 interface ConfirmingProps {
   readBack: string;
@@ -10,6 +15,7 @@ interface ConfirmingProps {
 
 export function Confirming({ readBack, busy, yes, no }: ConfirmingProps) {
   const heading = useRef<HTMLHeadingElement>(null);
+  const [failure, setFailure] = useState("");
   useEffect(() => heading.current?.focus(), [readBack]);
   return (
     <section class="confirming" aria-label="Is that right?">
@@ -23,7 +29,19 @@ export function Confirming({ readBack, busy, yes, no }: ConfirmingProps) {
         <button class="button" type="button" disabled={busy} onClick={no}>
           No
         </button>
+        <SpeakButton
+          label="Say yes or no"
+          heard={(words) => {
+            const said = words.toLowerCase().replace(/[.,!?]/g, "").trim();
+            if (YES.includes(said)) yes();
+            else if (NO.includes(said)) no();
+            else setFailure(`I have heard “${words}”: say yes or no, or press a button.`);
+          }}
+        />
       </div>
+      <p class="mistake" role="alert">
+        {failure}
+      </p>
     </section>
   );
 }

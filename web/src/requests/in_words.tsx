@@ -1,6 +1,7 @@
 // Asking in words: what was understood is read back, and asked for once somebody has said yes.
 import { useId, useState } from "preact/hooks";
 import * as rest from "../wire/rest";
+import { SpeakButton } from "./speak_button";
 import type { RequestDocument } from "./use_asking";
 import { timeOf } from "./when";
 
@@ -20,12 +21,11 @@ export function InWords({ site, robot, example, understood }: InWordsProps) {
   const [words, setWords] = useState("");
   const [question, setQuestion] = useState("");
   const [busy, setBusy] = useState(false);
-  const say = async (event: SubmitEvent) => {
-    event.preventDefault();
-    if (words.trim() === "") return;
+  const say = async (said: string) => {
+    if (said.trim() === "") return;
     setBusy(true);
     try {
-      const found = await rest.understandRequest(site, words, robot, timeOf(new Date()));
+      const found = await rest.understandRequest(site, said, robot, timeOf(new Date()));
       setQuestion(found.question ?? "");
       if (found.request !== null && found.read_back !== null) {
         setWords("");
@@ -38,7 +38,13 @@ export function InWords({ site, robot, example, understood }: InWordsProps) {
     }
   };
   return (
-    <form class="in-words" onSubmit={(event) => void say(event)}>
+    <form
+      class="in-words"
+      onSubmit={(event) => {
+        event.preventDefault();
+        void say(words);
+      }}
+    >
       <label for={id}>Say it in words, such as “{example}”</label>
       <div>
         <input
@@ -52,6 +58,13 @@ export function InWords({ site, robot, example, understood }: InWordsProps) {
         <button class="button" disabled={busy || words.trim() === ""}>
           Say it
         </button>
+        <SpeakButton
+          label="Speak"
+          heard={(said) => {
+            setWords(said);
+            void say(said);
+          }}
+        />
       </div>
       <p class="mistake" role="alert">
         {question}

@@ -13,7 +13,7 @@ export function Refused({ refused: { request, why, by }, clock, ask }: RefusedPr
     <div class="refused">
       <div role="alert">
         <p class="mistake">{by === null ? "That cannot be done." : "That cannot be done by then."}</p>
-        {by !== null && <p>No robot gets it done before then beside what it has to do already.</p>}
+        {by !== null && <p>No robot gets it done so soon.</p>}
         {by === null && <p>{asSentence(why)}</p>}
       </div>
       {by !== null && (

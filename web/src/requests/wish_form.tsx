@@ -3,7 +3,7 @@ import { useId, useState } from "preact/hooks";
 import type { FleetView, RequestKind } from "../wire/types";
 import { Confirming } from "./confirming";
 import { InWords } from "./in_words";
-import { placeMeant, said } from "./places";
+import { byFloor, placeMeant, said } from "./places";
 import { Refused } from "./refused";
 import type { RequestDocument, UseAsking } from "./use_asking";
 import { type Kind, missing, newName, NO_WISH, requestOf, type Wish } from "./wish";
@@ -56,7 +56,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
         <InWords
           site={fleet.site}
           robot={null}
-          example={`bring the mail from ${said(fleet.places[0] ?? "101")} to ${said(fleet.places.at(-1) ?? "305")}`}
+          example={exampleFor(fleet.places)}
           understood={(request, readBack) => {
             forget();
             setInWords({ request, readBack });
@@ -142,6 +142,15 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
       {asking.phase === "refused" && <Refused refused={asking} clock={clock} ask={(request) => void ask(request)} />}
     </section>
   );
+}
+
+/** A sentence about places that are there, on different floors where there are several. */
+function exampleFor(places: readonly string[]): string {
+  const floors = [...byFloor(places).values()];
+  const [origin] = floors[0] ?? [];
+  const destination = floors.length > 1 ? floors.at(-1)?.[0] : floors[0]?.[1];
+  if (origin === undefined || destination === undefined) return "come to room 203";
+  return `bring the mail from ${said(origin)} to ${said(destination)}`;
 }
 
 /** The wish with places for what was written, and what is wrong with that. */
