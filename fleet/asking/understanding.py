@@ -29,6 +29,8 @@ _EXAMPLES = (
     "Say for instance “bring the mail from 101 to 305”, “come to room 203” or “tell 305 that lunch "
     "is ready”."
 )
+_MOST_WORDS = 20
+"""Nobody needs more to say who is told something, and where; each costs looks at the places."""
 _HERE = ("here", "me", "us")
 _ME = ("me", "us", "you")
 
@@ -140,32 +142,39 @@ def _coming(words: Sequence[str]) -> _Slots:
 
 
 def _telling(verb: str, words: Sequence[str]) -> Iterator[_Slots]:
-    ends = [at for at, word in enumerate(words) if at > 0 and _begins_message(word)]
-    if not ends:
-        raise _MissingError("What am I to tell? Say for instance “tell 305 that lunch is ready”.")
-    for end in ends:
-        begin = end if is_quoted(words[end]) else end + 1
-        message = free_text(words[begin:])
-        whom = words[:end]
-        if verb == "let":
-            if _plain(whom[-1]) != "know":
-                continue
-            whom = whom[:-1]
-        if (
-            message == ""
-            or not whom
-            or (is_quoted(words[end]) and _plain(words[end - 1]) == "that")
-        ):
+    for whom, said in list(_messages(verb, words)):
+        told = {"message": free_text(said)}
+        if not whom or len(whom) > _MOST_WORDS or told["message"] == "":
             continue
-        yield _Slots(RequestKind.DELIVER_MESSAGE, {"place": whom}, {"message": message})
+        yield _Slots(RequestKind.DELIVER_MESSAGE, {"place": whom}, told)
         for at, word in enumerate(whom[:-1]):
             if at > 0 and _plain(word) in ("in", "at"):
-                told = {"message": message, "person": free_text(whom[:at])}
-                yield _Slots(RequestKind.DELIVER_MESSAGE, {"place": whom[at + 1 :]}, told)
+                person = {"person": free_text(whom[:at])}
+                yield _Slots(RequestKind.DELIVER_MESSAGE, {"place": whom[at + 1 :]}, told | person)
 
 
-def _begins_message(word: str) -> bool:
-    return is_quoted(word) or _plain(word) == "that"
+def _messages(verb: str, words: Sequence[str]) -> Iterator[tuple[Sequence[str], Sequence[str]]]:
+    """To whom, and what, wherever a message may begin. Raises `_MissingError`."""
+    quotation = next((at for at, each in enumerate(words) if is_quoted(each)), None)
+    begins = [at for at, each in enumerate(words) if at > 0 and _plain(each) == "that"]
+    if not begins and quotation is None and verb == "tell":
+        # "Tell 305 lunch is ready": that the place ends somewhere is all that is known.
+        told = [at for at in range(1, len(words)) if _plain(words[at]) not in ("to", "about")]
+        yield from ((words[:at], words[at:]) for at in told)
+    elif begins:
+        for at in begins:
+            yield _whom(verb, words[:at]), words[at + 1 :]
+    elif quotation is not None:
+        yield _whom(verb, words[:quotation]), words[quotation:]
+    if len(words) < 2 or not (begins or quotation or verb == "tell"):
+        raise _MissingError("What am I to tell? Say for instance “tell 305 that lunch is ready”.")
+
+
+def _whom(verb: str, words: Sequence[str]) -> Sequence[str]:
+    """Whom somebody lets "know", or nobody where the sentence has no such word."""
+    if verb == "tell":
+        return words
+    return words[:-1] if _plain_words(words[-1:]) == ["know"] else []
 
 
 def _is_telling(words: Sequence[str]) -> bool:

@@ -6,10 +6,19 @@ import pytest
 
 from mend.errors import WrongInputError
 from mend.fleet.dispatch.leg import Leg
-from mend.fleet.requests import DeliverMessage, Escort, GoToRoom, LegAction, Transport
+from mend.fleet.requests import (
+    REQUESTS,
+    DeliverMessage,
+    Escort,
+    GoToRoom,
+    LegAction,
+    RequestKind,
+    Transport,
+)
 from mend.server.fleets.leg_task import (
     BEHAVIORS,
     LegStage,
+    doable_kinds,
     item_of,
     require_doable,
     run_of,
@@ -81,3 +90,13 @@ def test_what_no_robot_can_do_is_refused_before_it_is_booked() -> None:
 
 def test_every_behavior_of_a_leg_is_one_that_robots_have() -> None:
     assert set(BEHAVIORS.values()) <= load_plugins("mend.behaviors").keys()
+
+
+def test_what_may_be_asked_for_is_what_behaviors_do() -> None:
+    behaviors = load_plugins("mend.behaviors")
+    assert doable_kinds({}) == [RequestKind.GO_TO_ROOM]
+    kinds = doable_kinds(behaviors)
+    assert {RequestKind.DELIVER_MESSAGE, RequestKind.TRANSPORT} <= set(kinds)
+    without = {name: each for name, each in behaviors.items() if name != "hand_over_item"}
+    assert set(kinds) - set(doable_kinds(without)) == {RequestKind.TRANSPORT}
+    assert set(kinds) <= set(REQUESTS)
