@@ -175,6 +175,8 @@ async def test_whoever_goes_away_leaves_the_start_to_who_comes_next(
     page = await at_robot(service, open_page)
     await page.clock.install()
     await press(page, "Come to a room")
+    # It counts from when the question is shown.
+    await expect(page.get_by_role("heading", name="Where am I to come?")).to_be_focused()
     await page.clock.fast_forward("02:00")
     await expect(page.get_by_text("What may I do for you?")).to_be_visible()
 

@@ -3,6 +3,8 @@ import { describe, expect, it } from "vitest";
 import { byFloor, placeMeant } from "../src/requests/places";
 import { when } from "../src/requests/when";
 import { requestOf } from "../src/requests/wish";
+import { followed } from "../src/requests/use_asking";
+import type { RequestView } from "../src/wire/types";
 import { type Asked, nextStep, readBackOf, wishOf } from "../src/touch/steps";
 
 const PLACES = ["F1/101", "F1/kitchen", "F1/meeting room", "F2/203", "F2/kitchen"];
@@ -76,5 +78,21 @@ describe("at a touch screen", () => {
       origin: "F1/101",
       destination: "F2/203",
     });
+  });
+});
+
+describe("what was asked for", () => {
+  const request = (name: string, status: string) => ({ name, status }) as RequestView;
+  const booked = request("r1", "booked");
+
+  it("is followed as it is known last", () => {
+    const done = request("r1", "done");
+    expect(followed({ phase: "booked", request: booked }, [request("r2", "failed"), done])).toBe(done);
+    expect(followed({ phase: "booked", request: booked }, null)).toBe(booked);
+    expect(followed({ phase: "nothing" }, [done])).toBe(null);
+  });
+
+  it("is not what was refused under its name before", () => {
+    expect(followed({ phase: "booked", request: booked }, [request("r1", "refused")])).toBe(booked);
   });
 });

@@ -12,7 +12,7 @@ export function Refused({ refused: { request, why, by }, clock, ask }: RefusedPr
   return (
     <div class="refused">
       <div role="alert">
-        <p class="mistake">{by === null ? "That cannot be done." : "That cannot be done by then."}</p>
+        <p class="mistake">{refusedInShort(by)}</p>
         {by !== null && <p>No robot gets it done so soon.</p>}
         {by === null && <p>{asSentence(why)}</p>}
       </div>
@@ -29,6 +29,11 @@ export function Refused({ refused: { request, why, by }, clock, ask }: RefusedPr
       )}
     </div>
   );
+}
+
+/** The same for whoever hears it. */
+export function refusedInShort(by: number | null): string {
+  return by === null ? "That cannot be done." : "That cannot be done by then.";
 }
 
 function asSentence(why: string): string {

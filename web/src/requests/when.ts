@@ -9,13 +9,13 @@ export interface SiteClock {
 
 const SOON_S = 90 * 60;
 
-/** "in about 4 minutes, at 14:35"; without the time of day where the building's clock just runs on. */
-export function when(moment_s: number, { now, speed }: SiteClock, today: Date): string {
-  if (speed === "max") return within(moment_s - now);
-  const left_s = Math.max(0, (moment_s - now) / speed);
-  const then = new Date(today.getTime() + 1000 * left_s);
+/** When a moment of it (seconds) is: "in about 4 minutes, at 14:35"; without the time of day where the building's clock just runs on. */
+export function when(moment: number, { now, speed }: SiteClock, today: Date): string {
+  if (speed === "max") return within(moment - now);
+  const left = Math.max(0, (moment - now) / speed);
+  const then = new Date(today.getTime() + 1000 * left);
   const at = `at ${timeOf(then)}`;
-  if (left_s < SOON_S) return `${within(left_s)}, ${at}`;
+  if (left < SOON_S) return `${within(left)}, ${at}`;
   return then.toDateString() === today.toDateString() ? at : `on ${WEEKDAYS[then.getDay()]} ${at}`;
 }
 

@@ -5,10 +5,10 @@ import { robotName } from "../question/fault_words";
 import { Confirming } from "../requests/confirming";
 import { Followed } from "../requests/followed";
 import { InWords } from "../requests/in_words";
-import { Refused } from "../requests/refused";
+import { Refused, refusedInShort } from "../requests/refused";
 import { fleets } from "../requests/fleets";
 import { said } from "../requests/places";
-import { followed, useAsking, type RequestDocument } from "../requests/use_asking";
+import { type Asking, followed, type RequestDocument, useAsking } from "../requests/use_asking";
 import { useRequests } from "../requests/use_requests";
 import { isOver, wanted } from "../requests/request_words";
 import { type Kind, newName, requestOf } from "../requests/wish";
@@ -74,7 +74,7 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
   const booked = followed(asking, requests);
   const goesOn = booked !== null && !isOver(booked);
   useIdle((asked !== null || confirmed !== null) && !goesOn, IDLE_MS, back);
-  useSaidAloud(heard(asking.phase, confirmed?.readBack ?? "", booked === null ? "" : wanted(booked, said)));
+  useSaidAloud(heard(asking, confirmed?.readBack ?? ""));
   if (fleet === null) return <p class="quiet">Loading …</p>;
   const clock = { now: fleet.now_s, speed: site.speed };
   const answer = (next: Asked) => {
@@ -133,10 +133,9 @@ function Start({ robot, choose }: { robot: AskedRobotView; choose: (kind: Kind) 
   );
 }
 
-function heard(phase: string, readBack: string, done: string): string {
-  if (phase === "booked") return done === "" ? "" : `All right. ${done}.`;
-  if (phase === "refused") return "That cannot be done by then.";
-  return readBack;
+function heard(asking: Asking, readBack: string): string {
+  if (asking.phase === "booked") return `All right. ${wanted(asking.request, said)}.`;
+  return asking.phase === "refused" ? refusedInShort(asking.by) : readBack;
 }
 
 /** A sentence about a place that is there. */

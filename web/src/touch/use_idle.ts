@@ -1,8 +1,8 @@
 // Whoever went away in the middle leaves a beginning to who comes next.
 import { useEffect, useRef } from "preact/hooks";
 
-/** Call `back` once nothing has been touched or typed for `after_ms`, as long as `on`. */
-export function useIdle(on: boolean, after_ms: number, back: () => void): void {
+/** Call `back` once nothing has been touched or typed for `afterMs`, as long as `on`. */
+export function useIdle(on: boolean, afterMs: number, back: () => void): void {
   const then = useRef(back);
   then.current = back;
   useEffect(() => {
@@ -10,7 +10,7 @@ export function useIdle(on: boolean, after_ms: number, back: () => void): void {
     let timer = 0;
     const begin = () => {
       window.clearTimeout(timer);
-      timer = window.setTimeout(() => then.current(), after_ms);
+      timer = window.setTimeout(() => then.current(), afterMs);
     };
     begin();
     window.addEventListener("pointerdown", begin);
@@ -20,5 +20,5 @@ export function useIdle(on: boolean, after_ms: number, back: () => void): void {
       window.removeEventListener("pointerdown", begin);
       window.removeEventListener("keydown", begin);
     };
-  }, [on, after_ms]);
+  }, [on, afterMs]);
 }
