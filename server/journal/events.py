@@ -126,13 +126,17 @@ class NodeTaken(NodeEvent):
 
 
 class StepStarted(NodeEvent):
-    """A behavior's step has begun (1 is the first)."""
+    """A behavior's step has begun (1 is the first).
+
+    `phase`: what it is for, as the robot says; None in the journals of an older Mend.
+    """
 
     type: Literal["step_started"] = "step_started"
     robot: str
     execution: UUID
     step: int
     step_name: str
+    phase: str | None = None
 
 
 class IssueRaised(NodeEvent):
@@ -731,12 +735,19 @@ class LegBegun(LegEvent):
 
 
 class LegEnded(LegEvent):
-    """What became of a leg, why where it was not done, and where its robot is then."""
+    """What became of a leg, why where it was not done, and where its robot is then.
+
+    `driven_m`: how far its robot has driven meanwhile, by its wheels, and `barred_s` how long it
+    stood on its way before what barred it; None where that is not known, and in the journals of an
+    older Mend.
+    """
 
     type: Literal["leg_ended"] = "leg_ended"
     outcome: str
     reason: str | None
     at: str
+    driven_m: float | None = None
+    barred_s: float | None = None
 
 
 AnyEvent = Annotated[

@@ -2,14 +2,37 @@
 
 import csv
 from collections.abc import Sequence
+from importlib.metadata import version
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from mend.server.report.fleet_tally import Table
+from mend.server.report.fleet_history import FleetHistory
+from mend.server.report.fleet_plans import plan_changes, transfers
+from mend.server.report.fleet_requests import each_request, requests_by_kind, waits_by_kind
+from mend.server.report.fleet_robots import legs_by_robot, metres_by_robot, questions_by_issue
+from mend.server.report.fleet_times import each_leg, times_by_kind, times_by_robot
+from mend.server.report.table import Table, shown, written
 
 
-def write_fleet_report(path: Path, site: str, tables: Sequence[Table]) -> None:
+def tables_of(history: FleetHistory) -> list[Table]:
+    """All tables, in their order on the page."""
+    return [
+        requests_by_kind(history),
+        waits_by_kind(history),
+        times_by_kind(history),
+        times_by_robot(history),
+        legs_by_robot(history),
+        metres_by_robot(history),
+        questions_by_issue(history),
+        transfers(history),
+        plan_changes(history),
+        each_request(history),
+        each_leg(history),
+    ]
+
+
+def write_fleet_report(path: Path, history: FleetHistory, tables: Sequence[Table]) -> None:
     """Write the page. Raises `OSError`."""
     environment = Environment(
         loader=PackageLoader("mend.server.report"),
@@ -18,9 +41,25 @@ def write_fleet_report(path: Path, site: str, tables: Sequence[Table]) -> None:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    text = environment.get_template("fleet.html").render(site=site, tables=tables)
+    environment.filters["shown"] = shown
+    text = environment.get_template("fleet.html").render(
+        site=str(history.site),
+        facts=_facts(history),
+        tables=tables,
+        version=version("mend-robots"),
+    )
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, encoding="utf-8")
+
+
+def _facts(history: FleetHistory) -> list[tuple[str, str]]:
+    times = [each.wall_time for each in history.within]
+    return [
+        ("Site", str(history.site)),
+        ("Clock of the site", f"{history.begins_s:.0f} s to {history.ends_s:.0f} s"),
+        ("From", f"{times[0]:%Y-%m-%d %H:%M:%S} UTC"),
+        ("Until", f"{times[-1]:%Y-%m-%d %H:%M:%S} UTC"),
+    ]
 
 
 def write_fleet_csv(folder: Path, tables: Sequence[Table]) -> None:
@@ -30,4 +69,4 @@ def write_fleet_csv(folder: Path, tables: Sequence[Table]) -> None:
         with (folder / f"{table.name}.csv").open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file)
             writer.writerow(table.columns)
-            writer.writerows(table.rows)
+            writer.writerows([written(cell) for cell in row] for row in table.rows)
