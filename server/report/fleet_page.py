@@ -6,7 +6,9 @@ from importlib.metadata import version
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
 
+from mend.server.report.fleet_charts import charts_of, requests_by_time
 from mend.server.report.fleet_history import FleetHistory
 from mend.server.report.fleet_plans import plan_changes, transfers
 from mend.server.report.fleet_requests import each_request, requests_by_kind, waits_by_kind
@@ -19,16 +21,17 @@ def tables_of(history: FleetHistory) -> list[Table]:
     """All tables, in their order on the page."""
     return [
         requests_by_kind(history),
+        requests_by_time(history),
         waits_by_kind(history),
         times_by_kind(history),
         times_by_robot(history),
+        each_leg(history),
         legs_by_robot(history),
         metres_by_robot(history),
         questions_by_issue(history),
         transfers(history),
         plan_changes(history),
         each_request(history),
-        each_leg(history),
     ]
 
 
@@ -46,6 +49,7 @@ def write_fleet_report(path: Path, history: FleetHistory, tables: Sequence[Table
         site=str(history.site),
         facts=_facts(history),
         tables=tables,
+        charts={name: (Markup(each.svg), each.legend) for name, each in charts_of(history).items()},
         version=version("mend-robots"),
     )
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,6 +1,7 @@
 """What the time of a fleet's legs went by with, by kind of request and by robot."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from mend.server.report.fleet_history import FleetHistory, LegRecord
 from mend.server.report.leg_times import TimeUse, time_split
@@ -8,24 +9,24 @@ from mend.server.report.table import Table
 
 _NOTE = (
     "Minutes of the legs that ended in this time, each second in one class. Asking for help counts "
-    "as what it was asked for. What a robot met and let pass without asking is blocked, too, where "
-    "it has said so; it does not in journals of an older Mend, which do not say either what the "
-    "steps of a robot were for: their time is 'not journaled'."
+    "as what it was asked for. Blocked is also what a robot met and let pass without asking, where "
+    "it has said so. Staying or waiting is at the place of a leg, until it is time. Other is "
+    "looking round between steps, and without a connection. Journals of an older Mend do not say "
+    "what the steps of a robot were for: that time is not journaled."
 )
 
 
 def times_by_kind(history: FleetHistory) -> Table:
     """Minutes by class, for the legs of each kind of request."""
     return _times(
-        history, "times", "What the time went by with", "kind", lambda leg: _kind(history, leg)
+        history, ("times", "What the time went by with", _NOTE), "kind", partial(_kind, history)
     )
 
 
 def times_by_robot(history: FleetHistory) -> Table:
     """Minutes by class, for the legs of each robot."""
-    return _times(
-        history, "times_by_robot", "The same by robot", "robot", lambda leg: leg.begun.robot
-    )
+    about = ("times_by_robot", "The same by robot", "As above.")
+    return _times(history, about, "robot", lambda leg: leg.begun.robot)
 
 
 def split_of(legs: Sequence[LegRecord]) -> dict[TimeUse, float]:
@@ -43,14 +44,17 @@ def legs_by(history: FleetHistory, group: Callable[[LegRecord], str]) -> dict[st
 
 
 def _times(
-    history: FleetHistory, name: str, title: str, head: str, group: Callable[[LegRecord], str]
+    history: FleetHistory,
+    about: tuple[str, str, str],
+    head: str,
+    group: Callable[[LegRecord], str],
 ) -> Table:
     groups = legs_by(history, group)
     rows = [_row(label, legs) for label, legs in groups.items()]
     if len(groups) > 1:
         rows.append(_row("all", [each for legs in groups.values() for each in legs]))
     heads = (head, "requests", "legs", *(f"{use}, min" for use in TimeUse), "all, min")
-    return Table(name, title, _NOTE, heads, rows)
+    return Table(*about, heads, rows)
 
 
 def _row(label: str, legs: Sequence[LegRecord]) -> tuple[str | int | float, ...]:

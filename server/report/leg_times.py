@@ -23,9 +23,9 @@ class TimeUse(StrEnum):
     BLOCKED = "blocked"
     END = "help at the end"
     TRANSFER = "changing robots"
-    HELP = "other help on the way"
-    WAITING = "staying, or waiting for its time"
-    OTHER = "looking round, or lost to the service"
+    HELP = "other help"
+    WAITING = "staying or waiting"
+    OTHER = "other"
     UNKNOWN = "not journaled"
 
 
