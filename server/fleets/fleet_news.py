@@ -116,6 +116,10 @@ class FleetNews:
             requests=list(change.requests),
             robots=list(change.robots),
             said=dict(change.said),
+            transfers=[
+                ev.PlannedTransfer(request=name, sooner_s=saving.sooner_s, less_m=saving.less_m)
+                for name, saving in change.transfers.items()
+            ],
         )
 
 

@@ -688,10 +688,23 @@ class RequestChanged(FleetEvent):
     author: Author | None = None
 
 
+class PlannedTransfer(EventModel):
+    """A request's thing is to change robots: what that saves, as planned.
+
+    `sooner_s`: how much sooner it is delivered than by one robot alone; `less_m`: how much less far
+    all robots drive. Both are None where one alone could not bring it.
+    """
+
+    request: str
+    sooner_s: float | None
+    less_m: float | None
+
+
 class PlanChanged(FleetEvent):
     """The plan of a fleet became another one, and why; whom that touches.
 
-    `said`: a sentence by request or robot.
+    `said`: a sentence by request or robot. `transfers`: what is to change robots that was not
+    before, or not from this robot; the journals of an older Mend do not tell.
     """
 
     type: Literal["plan_changed"] = "plan_changed"
@@ -700,6 +713,7 @@ class PlanChanged(FleetEvent):
     requests: list[str]
     robots: list[str]
     said: dict[str, str]
+    transfers: list[PlannedTransfer] = []
 
 
 class FleetTold(FleetEvent):

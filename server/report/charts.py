@@ -54,7 +54,7 @@ def axis_for(labels: Sequence[str], first: float, last: float, width_px: float =
 
 def round_ticks(first: float, last: float, about: int) -> Iterator[float]:
     """Round values between two."""
-    step = round_step((last - first) / about) if last > first else 1.0
+    step = round_step(max(last - first, 1e-9) / about)
     number = -floor(-first / step)
     while number * step <= last:
         yield number * step

@@ -99,6 +99,8 @@ class FleetHistory:
     legs: list[LegRecord] = field(default_factory=list)
     dialogues: dict[UUID, DialogueRecord] = field(default_factory=dict)
     plans: list[ev.PlanChanged] = field(default_factory=list)
+    planned: dict[str, ev.PlannedTransfer] = field(default_factory=dict)
+    """By request, what its latest plan said of its changing robots."""
     told: list[ev.FleetTold] = field(default_factory=list)
     within: list[ev.FleetEvent] = field(default_factory=list)
     _stages: dict[UUID, tuple[LegRecord, LegStage]] = field(default_factory=dict)
@@ -181,6 +183,7 @@ class FleetHistory:
     @_note.register
     def _(self, event: ev.PlanChanged, within: bool) -> None:
         self.plans += [event] if within else []
+        self.planned |= {each.request: each for each in event.transfers}
 
     @_note.register
     def _(self, event: ev.FleetTold, within: bool) -> None:

@@ -80,4 +80,5 @@ def test_every_dot_says_whose_it_is() -> None:
 def test_ticks_are_few_and_between_the_ends(first: float, span: float, about: int) -> None:
     ticks = list(round_ticks(first, first + span, about))
     assert len(ticks) <= about + 1
-    assert all(first * (1 - 1e-9) <= each <= (first + span) * (1 + 1e-9) for each in ticks)
+    near = 1e-9 * (1.0 + first + span)
+    assert all(first - near <= each <= first + span + near for each in ticks)
