@@ -52,7 +52,7 @@ def report(
         tables = tables_of(history)
         write_fleet_report(output, history, tables)
         if csv is not None:
-            write_fleet_csv(csv, tables)
+            write_fleet_csv(csv, history, tables)
     typer.echo(output)
 
 

@@ -13,7 +13,7 @@ from mend.server.report.fleet_history import FleetHistory
 from mend.server.report.fleet_plans import plan_changes, transfers
 from mend.server.report.fleet_requests import each_request, requests_by_kind, waits_by_kind
 from mend.server.report.fleet_robots import legs_by_robot, metres_by_robot, questions_by_issue
-from mend.server.report.fleet_times import each_leg, times_by_kind, times_by_robot
+from mend.server.report.fleet_times import each_leg, each_stretch, times_by_kind, times_by_robot
 from mend.server.report.table import Table, shown, written
 
 
@@ -66,10 +66,10 @@ def _facts(history: FleetHistory) -> list[tuple[str, str]]:
     ]
 
 
-def write_fleet_csv(folder: Path, tables: Sequence[Table]) -> None:
-    """Write each table as `NAME.csv`. Raises `OSError`."""
+def write_fleet_csv(folder: Path, history: FleetHistory, tables: Sequence[Table]) -> None:
+    """Write each table, and what the timeline shows, as `NAME.csv`. Raises `OSError`."""
     folder.mkdir(parents=True, exist_ok=True)
-    for table in tables:
+    for table in (*tables, each_stretch(history)):
         with (folder / f"{table.name}.csv").open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file)
             writer.writerow(table.columns)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from mend.server.report.fleet_history import FleetHistory, LegRecord
-from mend.server.report.leg_times import TimeUse, time_split
+from mend.server.report.leg_times import TimeUse, stretches_of, time_split
 from mend.server.report.table import Table
 
 _NOTE = (
@@ -104,6 +104,25 @@ def each_leg(history: FleetHistory) -> Table:
     )
     note = "Seconds of the site's clock."
     return Table("legs", "Each leg", note, heads, rows, folded=True)
+
+
+def each_stretch(history: FleetHistory) -> Table:
+    """What the timeline is drawn from."""
+    rows = [
+        (
+            leg.begun.robot,
+            leg.begun.number,
+            leg.begun.booking,
+            str(part.use),
+            part.begin_s,
+            part.end_s,
+        )
+        for leg in history.legs
+        for part in stretches_of(leg, history.ends_s)
+    ]
+    heads = ("robot", "number", "request", "what", "from, s", "until, s")
+    note = "Seconds of the site's clock; of standing before something only what was asked about."
+    return Table("stretches", "What each leg's time went by with", note, heads, rows, folded=True)
 
 
 def _kind(history: FleetHistory, leg: LegRecord) -> str:

@@ -39,9 +39,10 @@ def timeline_of(history: FleetHistory, robots: list[str]) -> Chart:
     failed = sum(ended.outcome != "done" for _, ended in history.ended)
     found = sum(each.finder is not None for each in history.told)
     said = (
-        f"{len(history.legs)} legs of {len(robots)} robots in {lasts_s / 60:.1f} min, of which "
-        f"{failed} ended without being done; {found} findings of robots; "
-        f"{len(history.plans)} changes of the plan. The table below has each leg."
+        f"{_counted(len(history.legs), 'leg')} of {_counted(len(robots), 'robot')} in "
+        f"{lasts_s / 60:.1f} min, of which "
+        f"{failed} ended without being done; {_counted(found, 'finding')} of robots; "
+        f"{_counted(len(history.plans), 'plan change')}. The table below has each leg."
     )
     marks = [("plan", "change of the plan"), ("failed", "leg that ended without being done")]
     marks += [("found", "finding of a robot"), ("out", "out of service, or back")]
@@ -107,3 +108,7 @@ def _draw_told(svg: Svg, told: ev.FleetTold, axis: Axis, y: float) -> None:
     else:
         path = f"M{x - 6:.1f} {y + 6:.1f}h12l-6-12z"
         svg.add("path", tip=tip, d=path, class_="out")
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
