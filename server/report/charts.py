@@ -25,13 +25,29 @@ class Chart:
 
 
 @dataclass(frozen=True, slots=True)
+class TimeUnit:
+    """What long and short times are read in."""
+
+    word: str
+    seconds: float
+
+    @classmethod
+    def of(cls, lasts_s: float) -> "TimeUnit":
+        """Minutes from ten of them on, hours from six."""
+        if lasts_s >= 6 * 3600.0:
+            return cls("h", 3600.0)
+        return cls("min", 60.0) if lasts_s >= 600.0 else cls("s", 1.0)
+
+
+@dataclass(frozen=True, slots=True)
 class Axis:
-    """What is measured from left to right."""
+    """What is measured from left to right; `per_tick`: how much of it a tick's unit is."""
 
     left_px: float
     right_px: float
     first: float
     last: float
+    per_tick: float = 1.0
 
     def x(self, value: float) -> float:
         """Where a value is."""
@@ -40,8 +56,9 @@ class Axis:
 
     def draw(self, svg: Svg, bottom: float, unit: str, ticks: int = 8) -> None:
         """Grid lines with their values above them."""
-        for value in round_ticks(self.first, self.last, ticks):
-            x = self.x(value)
+        per = self.per_tick
+        for value in round_ticks(self.first / per, self.last / per, ticks):
+            x = self.x(value * per)
             svg.add("line", x1=x, x2=x, y1=_TOP_PX - 6, y2=bottom, class_="grid")
             svg.text(x, _TOP_PX - 11, f"{value:g} {unit}", "soft middle")
 
@@ -139,7 +156,7 @@ class Column:
 def stacked_columns(
     title: str, columns: Sequence[Column], words: Mapping[str, str], unit: str, about: str
 ) -> Chart:
-    """A column for each part of the axis, `unit` is the axis's."""
+    """A column for each part of the axis, which is in `unit`."""
     most = max((sum(each.counts.values()) for each in columns), default=0) or 1
     step = max(1, round(round_step(most / 4)))
     first = columns[0].begin if columns else 0.0

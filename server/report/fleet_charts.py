@@ -8,6 +8,7 @@ from mend.server.report.charts import (
     Chart,
     Column,
     DotRow,
+    TimeUnit,
     dots,
     round_step,
     stacked_bars,
@@ -23,7 +24,6 @@ from mend.server.report.time_colors import WORDS, class_of
 
 COLUMNS = 20
 """Requests are counted in about so many parts of the span."""
-_OUTCOME_CLASSES = {f"outcome-{each.replace(' ', '-')}": each for each in OUTCOMES}
 _WAITS = {"until-begun": "until a robot set out", "until-done": "until it was done"}
 
 
@@ -41,29 +41,40 @@ def charts_of(history: FleetHistory) -> Mapping[str, Chart]:
 
 def requests_by_time(history: FleetHistory) -> Table:
     """What became of the requests that were made when."""
-    heads = ("from, min", "until, min", *OUTCOMES)
-    rows = [(each.begin, each.end, *each.counts.values()) for each in _columns(history)]
-    note = "By when they were made, in minutes of the site's clock, as they stood at the end."
+    unit, columns = _columns(history)
+    heads = (f"from, {unit}", f"until, {unit}", *OUTCOMES)
+    rows = [(each.begin, each.end, *each.counts.values()) for each in columns]
+    note = "By when they were made, by the site's clock, as they stood at the end."
     return Table("requests_by_time", "Requests over time", note, heads, rows, folded=True)
 
 
-def _columns(history: FleetHistory) -> list[Column]:
-    first, last = history.begins_s / 60, history.ends_s / 60
+def _columns(history: FleetHistory) -> tuple[str, list[Column]]:
+    """The unit of time, and what was counted in each of its parts."""
+    unit = TimeUnit.of(history.ends_s - history.begins_s)
+    first, last = history.begins_s / unit.seconds, history.ends_s / unit.seconds
     step = round_step(max(last - first, 1.0) / COLUMNS)
-    asked = [(each.asked.at_s / 60, outcome_of(each)) for each in history.asked]
-    columns = []
-    for number in range(int(first // step), int(last // step) + 1):
-        begin, end = number * step, (number + 1) * step
-        mine = [outcome for at, outcome in asked if begin <= at < end]
-        counts = {name: mine.count(outcome) for name, outcome in _OUTCOME_CLASSES.items()}
-        columns.append(Column(begin, end, counts))
-    return columns
+    begins = int(first // step)
+    counts = [dict.fromkeys(_OUTCOME_CLASSES, 0) for _ in range(begins, int(last // step) + 1)]
+    for each in history.asked:
+        number = int(each.asked.at_s / unit.seconds // step) - begins
+        counts[number][_class_of_outcome(outcome_of(each))] += 1
+    return unit.word, [
+        Column(number * step, (number + 1) * step, each)
+        for number, each in enumerate(counts, start=begins)
+    ]
+
+
+def _class_of_outcome(outcome: str) -> str:
+    return f"outcome-{outcome.replace(' ', '-')}"
+
+
+_OUTCOME_CLASSES = {_class_of_outcome(each): each for each in OUTCOMES}
 
 
 def _requests(history: FleetHistory) -> Chart:
     about = "Requests by when they were made, and what became of them"
-    columns = _columns(history)
-    return stacked_columns("Requests over time", columns, _OUTCOME_CLASSES, "min", about)
+    unit, columns = _columns(history)
+    return stacked_columns("Requests over time", columns, _OUTCOME_CLASSES, unit, about)
 
 
 def _waits(history: FleetHistory) -> Chart:

@@ -66,6 +66,8 @@ class LegRecord:
     begun: ev.LegBegun
     ended: ev.LegEnded | None = None
     runs: dict[LegStage, list[ev.Event]] = field(default_factory=dict)
+    over_before: bool = False
+    """Whether it was over before the span."""
 
     @property
     def floors(self) -> set[str]:
@@ -104,6 +106,7 @@ class FleetHistory:
     told: list[ev.FleetTold] = field(default_factory=list)
     within: list[ev.FleetEvent] = field(default_factory=list)
     _stages: dict[UUID, tuple[LegRecord, LegStage]] = field(default_factory=dict)
+    _by_request: dict[str, list[LegRecord]] = field(default_factory=dict)
     _open: dict[tuple[str, int], LegRecord] = field(default_factory=dict)
     _runs: set[UUID] = field(default_factory=set)
 
@@ -114,6 +117,9 @@ class FleetHistory:
         for event, within in span.up_to_end(events):
             if not isinstance(event, ev.SiteEvent) or event.site == site:
                 history._take(event, within)
+        history.legs = [each for each in history.legs if not each.over_before]
+        for each in history.legs:
+            history._by_request.setdefault(each.begun.booking, []).append(each)
         return history
 
     @property
@@ -136,7 +142,7 @@ class FleetHistory:
 
     def legs_of(self, request: str) -> list[LegRecord]:
         """The legs of a request, in the order in which they began."""
-        return [each for each in self.legs if each.begun.booking == request]
+        return self._by_request.get(request, [])
 
     def kind_of(self, leg: LegRecord) -> str:
         """The kind of request that a leg is for."""
@@ -176,9 +182,7 @@ class FleetHistory:
         leg = self._open.pop((event.robot, event.number), None)
         if leg is None:
             return
-        leg.ended = event
-        if not within:
-            self.legs.remove(leg)
+        leg.ended, leg.over_before = event, not within
 
     @_note.register
     def _(self, event: ev.PlanChanged, within: bool) -> None:

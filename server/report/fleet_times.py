@@ -103,7 +103,7 @@ def each_leg(history: FleetHistory) -> Table:
         "why",
     )
     note = "Seconds of the site's clock."
-    return Table("legs", "Each leg", note, heads, rows, folded=True)
+    return Table("legs", "Timeline of legs", note, heads, rows, folded=True)
 
 
 def each_stretch(history: FleetHistory) -> Table:

@@ -1,10 +1,12 @@
 """The timeline of a fleet: a row per robot, its legs on it, with what failed and was found."""
 
+from dataclasses import replace
+
 from mend.maps.svg import Svg
 from mend.server.journal import events as ev
-from mend.server.report.charts import WIDTH_PX, Axis, Chart, axis_for
+from mend.server.report.charts import WIDTH_PX, Axis, Chart, TimeUnit, axis_for
 from mend.server.report.fleet_history import FleetHistory, LegRecord
-from mend.server.report.leg_times import TimeUse, stretches_of
+from mend.server.report.leg_times import Stretch, TimeUse, stretches_of
 from mend.server.report.time_colors import WORDS, class_of
 
 _TOP_PX = 30.0
@@ -13,6 +15,7 @@ _BAR_PX = 18.0
 _MOST_PX = 4000.0
 _PX_PER_S = 0.8
 _NAME_PX = 6.2
+_NARROW_PX = 3.0
 _PLANS = "plan"
 
 
@@ -21,9 +24,11 @@ def timeline_of(history: FleetHistory, robots: list[str]) -> Chart:
     lasts_s = history.ends_s - history.begins_s
     width = min(max(WIDTH_PX, lasts_s * _PX_PER_S), _MOST_PX)
     labels = [_PLANS, *robots]
+    unit = TimeUnit.of(lasts_s)
     axis = axis_for(labels, history.begins_s, history.ends_s, width)
+    axis = replace(axis, per_tick=unit.seconds)
     svg, bottom = Svg(), _TOP_PX + _ROW_PX * len(robots) + 34
-    axis.draw(svg, bottom, "s", ticks=round(width / 110))
+    axis.draw(svg, bottom, unit.word, ticks=round(width / 110))
     _draw_plans(svg, history, axis)
     seen = set[TimeUse]()
     for number, robot in enumerate(robots):
@@ -64,16 +69,12 @@ def _draw_leg(
 ) -> set[TimeUse]:
     begun, ended = leg.begun, leg.ended
     what = f"{begun.action.replace('_', ' ')} '{begun.booking}' at {begun.place}"
-    seen = set[TimeUse]()
-    for each in stretches_of(leg, history.ends_s):
-        begin, end = max(each.begin_s, history.begins_s), each.end_s
-        if end <= begin:
-            continue
-        seen.add(each.use)
+    parts = _drawn_parts(history, leg, axis)
+    for each in parts:
         tip = f"{what}: {each.use}, {each.begin_s:.1f} to {each.end_s:.1f} s"
-        x, width = axis.x(begin), axis.x(end) - axis.x(begin)
+        x, width = axis.x(each.begin_s), axis.x(each.end_s) - axis.x(each.begin_s)
         class_ = f"part {class_of(each.use)}"
-        svg.add("rect", tip=tip, x=x, y=y, width=width, height=_BAR_PX, class_=class_)
+        svg.add("rect", tip=tip, x=x, y=y, width=max(width, 0.5), height=_BAR_PX, class_=class_)
     x = axis.x(max(begun.at_s, history.begins_s))
     svg.add("line", x1=x, x2=x, y1=y - 3, y2=y + _BAR_PX + 3, class_="begun")
     if ended is not None and ended.outcome != "done":
@@ -81,7 +82,20 @@ def _draw_leg(
         tip = f"{what}: {ended.outcome.replace('_', ' ')}, {ended.reason or 'no reason given'}"
         cross = f"M{at - 5:.1f} {middle - 5:.1f}l10 10m0-10l-10 10"
         svg.add("path", tip=tip, d=cross, class_="failed")
-    return seen
+    return {each.use for each in parts}
+
+
+def _drawn_parts(history: FleetHistory, leg: LegRecord, axis: Axis) -> list[Stretch]:
+    """What there is of a leg in the span; where it is narrow only the longest of it, for all."""
+    parts = [
+        replace(each, begin_s=max(each.begin_s, history.begins_s))
+        for each in stretches_of(leg, history.ends_s)
+        if each.end_s > history.begins_s
+    ]
+    if not parts or axis.x(parts[-1].end_s) - axis.x(parts[0].begin_s) > _NARROW_PX:
+        return parts
+    longest = max(parts, key=lambda each: each.end_s - each.begin_s)
+    return [replace(longest, begin_s=parts[0].begin_s, end_s=parts[-1].end_s)]
 
 
 def _draw_name(svg: Svg, leg: LegRecord, axis: Axis, y: float, free_px: float) -> float:

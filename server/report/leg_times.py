@@ -6,6 +6,7 @@ The first five classes are those of Veloso et al. (2015), Figure 7.
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import groupby
 
 from mend.fleet.requests import LegAction
 from mend.robots.execution.phase import Phase
@@ -101,7 +102,11 @@ def stretches_of(leg: LegRecord, until_s: float = 0.0) -> list[Stretch]:
             since_s = min(max(each.begin_s + shift_s, at_s), end_s)
             at_s = min(max(each.end_s + shift_s, since_s), end_s)
             parts.append(Stretch(since_s, at_s, each.use))
-    return list(_without_gaps(parts, begin_s, end_s, _between_runs(runs)))
+    whole = list(_without_gaps(parts, begin_s, end_s, _between_runs(runs)))
+    return [
+        Stretch(same[0].begin_s, same[-1].end_s, use)
+        for use, same in ((use, list(each)) for use, each in groupby(whole, lambda e: e.use))
+    ]
 
 
 def metres_of(legs: Iterable[LegRecord]) -> float | None:

@@ -18,6 +18,14 @@ class Table:
     rows: Sequence[tuple[Cell, ...]]
     folded: bool = False
 
+    @property
+    def figures(self) -> list[bool]:
+        """By column, whether there are figures in it."""
+        return [
+            any(isinstance(row[number], int | float) for row in self.rows)
+            for number in range(len(self.columns))
+        ]
+
 
 def shown(cell: Cell) -> str:
     """A cell for people: a figure to one decimal."""

@@ -151,3 +151,13 @@ def test_the_time_of_all_legs_is_all_there_is() -> None:
 def test_the_runs_of_a_leg_are_its_own() -> None:
     history = FleetHistory.of(SITE, day(), Span())
     assert [list(each.runs) for each in history.legs] == [[LegStage.DO], [LegStage.DO], [], []]
+
+
+@pytest.mark.parametrize(("last_s", "unit"), [(130.0, "s"), (7200.0, "min"), (86400.0, "h")])
+def test_every_request_is_counted_once_whatever_time_it_was(last_s: float, unit: str) -> None:
+    events = [*day(), asked("late", "booked", last_s)]
+    history = FleetHistory.of(SITE, events, Span())
+    (table,) = [each for each in tables_of(history) if each.name == "requests_by_time"]
+    assert table.columns[0] == f"from, {unit}"
+    assert 10 <= len(table.rows) <= 30
+    assert sum(int(count or 0) for _, _, *counts in table.rows for count in counts) == 3
