@@ -10,9 +10,10 @@ from mend.server.report.table import Table
 _NOTE = (
     "Minutes of the legs that ended in this time, each second in one class. Asking for help counts "
     "as what it was asked for. Blocked is also what a robot met and let pass without asking, where "
-    "it has said so. Staying or waiting is at the place of a leg, until it is time. Other is "
-    "looking round between steps, and without a connection. Journals of an older Mend do not say "
-    "what the steps of a robot were for: that time is not journaled."
+    "it has said so. Staying or waiting is at the place of a leg, until it is time, and before it "
+    "sets out, while another robot has that place. Other is looking round between steps, and "
+    "without a connection. Journals of an older Mend do not say what the steps of a robot were "
+    "for: that time is not journaled."
 )
 
 

@@ -154,12 +154,16 @@ class _RunReader:
         self._at_place = _AT_PLACE.get(action, TimeUse.WAITING)
         self._step: ev.StepStarted | None = None
         self._issue: str | None = None
+        self._sets_out = False
         self._gone = False
 
     @property
     def use(self) -> TimeUse:
         if self._gone:
             return TimeUse.OTHER
+        if not self._sets_out:
+            # It is told to as soon as nobody else has the place where it is to go.
+            return TimeUse.WAITING
         if self._issue in ON_THE_WAY:
             return ON_THE_WAY[self._issue]
         phase = None if self._step is None else self._step.phase
@@ -175,12 +179,14 @@ class _RunReader:
         """Something has happened."""
         match event:
             case ev.StepStarted():
-                self._step, self._issue = event, None
+                self._step, self._issue, self._sets_out = event, None, True
             case ev.IssueRaised(interrupts=True, issue=issue):
                 self._issue = issue
             case ev.RobotResumed():
                 self._issue = None
-            case ev.NodeStarted() | ev.NodeDone() | ev.NodeReset() | ev.NodeLeftOut():
+            case ev.NodeStarted():
+                self._step, self._issue, self._sets_out = None, None, True
+            case ev.NodeDone() | ev.NodeReset() | ev.NodeLeftOut():
                 self._step = self._issue = None
             case ev.RobotLost():
                 self._gone = True

@@ -76,6 +76,16 @@ class RunMaker:
             **self._at(time),
         )
 
+    def set_out(self, time: float) -> ev.NodeStarted:
+        return ev.NodeStarted(
+            boot="b",
+            execution=self._execution,
+            attempt=1,
+            candidates=[],
+            **self._node,
+            **self._at(time),
+        )
+
     def step(self, time: float, phase: Phase | None) -> ev.StepStarted:
         return ev.StepStarted(
             execution=self._execution,

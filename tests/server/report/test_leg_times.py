@@ -29,6 +29,7 @@ def test_a_leg_over_floors_is_told_apart_as_in_the_published_figure() -> None:
     run = COLLECT.run()
     events: list[ev.Event] = [
         run.started(),
+        run.set_out(0.5),
         run.step(1.0, Phase.TRAVEL),
         run.raised(5.0, "door_closed"),
         run.resumed(11.0),
@@ -46,7 +47,8 @@ def test_a_leg_over_floors_is_told_apart_as_in_the_published_figure() -> None:
         TimeUse.ELEVATOR: 30.0,
         TimeUse.NAVIGATION: 20.0,
         TimeUse.BLOCKED: 9.0,
-        TimeUse.OTHER: 2.0,
+        TimeUse.WAITING: 0.5,
+        TimeUse.OTHER: 1.5,
     }
 
 
@@ -92,6 +94,13 @@ def test_who_came_early_waits_between_its_two_runs() -> None:
     ]
 
 
+def test_who_may_not_set_out_as_another_has_the_place_waits() -> None:
+    run = COLLECT.run()
+    events = [run.started(), run.set_out(28.0), run.step(28.0, Phase.TRAVEL), run.done(40.0)]
+    leg = LegRecord(COLLECT.begun(0.0), COLLECT.ended(40.0), {LegStage.DO: events})
+    assert spent(leg) == {TimeUse.WAITING: 28.0, TimeUse.NAVIGATION: 12.0}
+
+
 def test_what_an_older_journal_does_not_say_is_not_guessed() -> None:
     run = COLLECT.run()
     events = [
@@ -117,6 +126,7 @@ def test_a_robot_whose_connection_is_gone_does_nothing_that_is_known() -> None:
 
 
 MAKES: list[Callable[[RunMaker, float], ev.Event]] = [
+    RunMaker.set_out,
     RunMaker.resumed,
     RunMaker.done,
     RunMaker.lost,
