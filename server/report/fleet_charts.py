@@ -43,7 +43,7 @@ def requests_by_time(history: FleetHistory) -> Table:
     """What became of the requests that were made when."""
     unit, columns = _columns(history)
     heads = (f"from, {unit}", f"until, {unit}", *OUTCOMES)
-    rows = [(each.begin, each.end, *each.counts.values()) for each in columns]
+    rows = [(each.begin, each.end, *each.counts.values()) for each in columns if history.asked]
     note = "By when they were made, by the site's clock, as they stood at the end."
     return Table("requests_by_time", "Requests over time", note, heads, rows, folded=True)
 

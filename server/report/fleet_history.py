@@ -1,6 +1,6 @@
 """What a building's fleet did in a span of its journal, gathered from the events of one site."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import singledispatchmethod
 from uuid import UUID
@@ -93,10 +93,13 @@ class DialogueRecord:
 class FleetHistory:
     """All times in seconds of the site's clock. `legs`: those that were not over before the span.
 
-    `begins_s`, `ends_s`: the first and the last moment of the span of which there is anything.
+    `begins_s`, `ends_s`: the span by that clock; where it is said by the calendar, or not at all,
+    from the first event in it to the last.
     """
 
     site: UUID
+    begins_s: float = 0.0
+    ends_s: float = 0.0
     requests: dict[str, RequestRecord] = field(default_factory=dict)
     legs: list[LegRecord] = field(default_factory=list)
     dialogues: dict[UUID, DialogueRecord] = field(default_factory=dict)
@@ -111,7 +114,7 @@ class FleetHistory:
     _runs: set[UUID] = field(default_factory=set)
 
     @classmethod
-    def of(cls, site: UUID, events: Iterable[ev.Event], span: Span) -> "FleetHistory":
+    def of(cls, site: UUID, events: Sequence[ev.Event], span: Span) -> "FleetHistory":
         """What events, in the order of their journal, tell of a site's fleet."""
         history = cls(site)
         for event, within in span.up_to_end(events):
@@ -120,15 +123,14 @@ class FleetHistory:
         history.legs = [each for each in history.legs if not each.over_before]
         for each in history.legs:
             history._by_request.setdefault(each.begun.booking, []).append(each)
+        if history.within:
+            history.begins_s, history.ends_s = history.within[0].at_s, history.within[-1].at_s
+        if isinstance(span.begin, float):
+            history.begins_s = span.begin
+        if isinstance(span.end, float):
+            fleet = (e for e in events if isinstance(e, ev.FleetEvent) and e.site == site)
+            history.ends_s = min(span.end, max((each.at_s for each in fleet), default=0.0))
         return history
-
-    @property
-    def begins_s(self) -> float:
-        return self.within[0].at_s if self.within else 0.0
-
-    @property
-    def ends_s(self) -> float:
-        return self.within[-1].at_s if self.within else 0.0
 
     @property
     def asked(self) -> list[RequestRecord]:

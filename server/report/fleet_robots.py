@@ -3,9 +3,19 @@
 from collections.abc import Iterable, Iterator
 from statistics import median
 
-from mend.server.report.fleet_history import DialogueRecord, FleetHistory, LegRecord
-from mend.server.report.leg_times import ON_THE_WAY, TimeUse, metres_of
+from mend.server.journal import events as ev
+from mend.server.report.fleet_history import FleetHistory, LegRecord
+from mend.server.report.leg_times import metres_of
 from mend.server.report.table import Cell, Table
+
+_SERVICE = (
+    "door_closed",
+    "elevator_help",
+    "item_not_given",
+    "item_not_taken",
+    "nobody_answers",
+)
+"""What people are asked for because a robot has no hands, not because it is in trouble."""
 
 
 def legs_by_robot(history: FleetHistory) -> Table:
@@ -26,8 +36,8 @@ def legs_by_robot(history: FleetHistory) -> Table:
             )
         )
     note = (
-        f"Of {lasts_s / 60:.1f} min of the site's clock, from the first event of its fleet in this "
-        "time to the last. Busy is from a leg's begin to its end, waiting at its place too."
+        f"Of {lasts_s / 60:.1f} min of the site's clock. Busy is from a leg's begin to its end, "
+        "waiting at its place too."
     )
     heads = ("robot", "legs ended", "legs done", "busy, min", "busy, %")
     return Table("robots", "Robots", note, heads, rows)
@@ -62,21 +72,18 @@ def _metres(history: FleetHistory, robots: Iterable[str]) -> Iterator[Cell]:
     names = set(robots)
     legs = [leg for leg, _ in history.ended if leg.begun.robot in names]
     known = [each for each in legs if each.ended is not None and each.ended.driven_m is not None]
-    runs = {event.run for leg in known for events in leg.runs.values() for event in events[:1]}
-    helped = [
-        each for each in history.dialogues.values() if each.helped and each.opened.run in runs
-    ]
+    helped = [issue for leg in known for issue in _helped_with(leg)]
     driven_m = metres_of(known)
     yield from (driven_m, len(known), len(legs))
-    for each in (helped, [each for each in helped if _on_the_way(each)]):
-        yield len(each)
-        yield driven_m / len(each) if driven_m is not None and each else None
+    for issues in (helped, [each for each in helped if each not in _SERVICE]):
+        yield len(issues)
+        yield driven_m / len(issues) if driven_m is not None and issues else None
 
 
-def _on_the_way(dialogue: DialogueRecord) -> bool:
-    issue = dialogue.opened.issue
-    use = ON_THE_WAY.get(issue)
-    return use in (TimeUse.BLOCKED, TimeUse.HELP) and issue != "door_closed"
+def _helped_with(leg: LegRecord) -> Iterator[str]:
+    """The issues of a leg with which people helped, whenever in it."""
+    for events in leg.runs.values():
+        yield from (each.issue for each in events if isinstance(each, ev.Resolved) and each.helped)
 
 
 def questions_by_issue(history: FleetHistory) -> Table:

@@ -79,6 +79,11 @@ def test_metres_are_told_by_robot_and_from_one_intervention_to_the_next() -> Non
     ]
 
 
+def test_help_counts_for_the_whole_leg_in_which_it_came() -> None:
+    (of_r0, *_) = rows(day(), "metres", Span(45.0, 70.0))
+    assert of_r0 == ("r0", 50.0, 1, 1, 1, 50.0, 1, 50.0)
+
+
 def test_what_changed_robots_is_told_with_what_that_was_to_save() -> None:
     assert rows(day(), "transfers") == [
         ("mail", "F1/hall", "r0", 60.0, "r1", 75.0, 15.0, 90.0, 12.0)
@@ -128,7 +133,7 @@ def test_a_request_counts_in_the_span_in_which_it_was_made() -> None:
 
 def test_busy_is_only_what_was_in_the_span() -> None:
     (busy, other) = rows(day(), "robots", Span(40.0, 76.0))
-    assert busy == ("r0", 1, 1, pytest.approx(20 / 60), pytest.approx(100 * 20 / 35))
+    assert busy == ("r0", 1, 1, pytest.approx(20 / 60), pytest.approx(100 * 20 / 36))
     assert other[0] == "r1"
 
 
