@@ -123,8 +123,9 @@ class FleetHistory:
         history.legs = [each for each in history.legs if not each.over_before]
         for each in history.legs:
             history._by_request.setdefault(each.begun.booking, []).append(each)
-        if history.within:
-            history.begins_s, history.ends_s = history.within[0].at_s, history.within[-1].at_s
+        # A change of plan may be told a little after what came of it.
+        times_s = [each.at_s for each in history.within]
+        history.begins_s, history.ends_s = min(times_s, default=0.0), max(times_s, default=0.0)
         if isinstance(span.begin, float):
             history.begins_s = span.begin
         if isinstance(span.end, float):

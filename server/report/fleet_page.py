@@ -10,10 +10,22 @@ from markupsafe import Markup
 
 from mend.server.report.fleet_charts import charts_of, requests_by_time
 from mend.server.report.fleet_history import FleetHistory
-from mend.server.report.fleet_plans import plan_changes, transfers
-from mend.server.report.fleet_requests import each_request, requests_by_kind, waits_by_kind
-from mend.server.report.fleet_robots import legs_by_robot, metres_by_robot, questions_by_issue
+from mend.server.report.fleet_plans import plan_changes, saved_s, transfers
+from mend.server.report.fleet_requests import (
+    each_request,
+    outcome_of,
+    requests_by_kind,
+    waits_by_kind,
+)
+from mend.server.report.fleet_robots import (
+    interventions_in,
+    legs_by_robot,
+    metres_between,
+    metres_by_robot,
+    questions_by_issue,
+)
 from mend.server.report.fleet_times import each_leg, each_stretch, times_by_kind, times_by_robot
+from mend.server.report.leg_times import metres_of
 from mend.server.report.table import Table, shown, written
 
 
@@ -48,6 +60,7 @@ def write_fleet_report(path: Path, history: FleetHistory, tables: Sequence[Table
     text = environment.get_template("fleet.html").render(
         site=str(history.site),
         facts=_facts(history),
+        figures=_figures(history),
         tables=tables,
         charts={name: (Markup(each.svg), each.legend) for name, each in charts_of(history).items()},
         version=version("mend-robots"),
@@ -64,6 +77,21 @@ def _facts(history: FleetHistory) -> list[tuple[str, str]]:
         ("From", f"{times[0]:%Y-%m-%d %H:%M:%S} UTC"),
         ("Until", f"{times[-1]:%Y-%m-%d %H:%M:%S} UTC"),
     ]
+
+
+def _figures(history: FleetHistory) -> list[tuple[str, str]]:
+    """What there is to know first, as far as it is known."""
+    asked, legs = history.asked, [leg for leg, _ in history.ended]
+    done = sum(outcome_of(each) == "done" for each in asked)
+    figures = [(f"{done} of {len(asked)}", "requests done"), (str(len(legs)), "legs ended")]
+    driven_m, helped = metres_of(legs), interventions_in(legs)
+    if driven_m is not None:
+        figures += [(f"{driven_m:.0f} m", "driven"), (str(len(helped)), "interventions")]
+    if (between_m := metres_between(legs, helped)) is not None:
+        figures.append((f"{between_m:.0f} m", "between interventions"))
+    if saved := saved_s(history):
+        figures.append((f"{sum(saved) / 60:.1f} min", "saved by transfers, as planned"))
+    return figures
 
 
 def write_fleet_csv(folder: Path, history: FleetHistory, tables: Sequence[Table]) -> None:

@@ -1,7 +1,5 @@
 """Why the plans of a fleet changed, and what changed robots on its way."""
 
-from collections.abc import Sequence
-
 from mend.fleet.requests import LegAction
 from mend.server.journal import events as ev
 from mend.server.report.fleet_history import FleetHistory, LegRecord
@@ -42,7 +40,7 @@ def transfers(history: FleetHistory) -> Table:
                 None if plan is None else plan.less_m,
             )
         )
-    return Table("transfers", "Transfers", _saved(rows), _TRANSFER_HEADS, rows)
+    return Table("transfers", "Transfers", _saved(history), _TRANSFER_HEADS, rows)
 
 
 _TRANSFER_HEADS = (
@@ -58,18 +56,30 @@ _TRANSFER_HEADS = (
 )
 
 
-def _saved(rows: Sequence[tuple[Cell, ...]]) -> str:
+def saved_s(history: FleetHistory) -> list[float]:
+    """How much sooner what changed robots in the span was to be delivered, as far as is known."""
+    given = {
+        leg.begun.booking
+        for leg, ended in history.ended
+        if leg.begun.action == LegAction.GIVE and ended.outcome == "done"
+    }
+    plans = (history.planned[each] for each in given if each in history.planned)
+    return [each.sooner_s for each in plans if each.sooner_s is not None]
+
+
+def _saved(history: FleetHistory) -> str:
     """What the figures were counted over, and what they add up to."""
-    sooner = [each for *_, each, _ in rows if isinstance(each, float)]
+    sooner_s = saved_s(history)
     note = (
         "What changed robots in this time, by the site's clock. Sooner is how much, by the plan "
         "that was made, one robot alone would have delivered it later; of what is not known, or "
         "where one alone could not have brought it, there is none."
     )
-    if not sooner:
+    if not sooner_s:
         return note
-    noun = "request" if len(sooner) == 1 else "requests"
-    return f"{sum(sooner) / 60:.1f} min were to be saved in all, with {len(sooner)} {noun}. {note}"
+    noun = "request" if len(sooner_s) == 1 else "requests"
+    saved_min = sum(sooner_s) / 60
+    return f"{saved_min:.1f} min were to be saved in all, with {len(sooner_s)} {noun}. {note}"
 
 
 def _taken(history: FleetHistory, given: LegRecord, since_s: float) -> ev.LegEnded | None:

@@ -1,6 +1,6 @@
 """What each robot of a fleet did, how far it drove, and how often people had to help it."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from statistics import median
 
 from mend.server.journal import events as ev
@@ -71,13 +71,24 @@ def metres_by_robot(history: FleetHistory) -> Table:
 def _metres(history: FleetHistory, robots: Iterable[str]) -> Iterator[Cell]:
     names = set(robots)
     legs = [leg for leg, _ in history.ended if leg.begun.robot in names]
-    known = [each for each in legs if each.ended is not None and each.ended.driven_m is not None]
-    helped = [issue for leg in known for issue in _helped_with(leg)]
-    driven_m = metres_of(known)
-    yield from (driven_m, len(known), len(legs))
+    known = [each for each in legs if metres_of([each]) is not None]
+    helped = interventions_in(known)
+    yield from (metres_of(known), len(known), len(legs))
     for issues in (helped, [each for each in helped if each not in _SERVICE]):
         yield len(issues)
-        yield driven_m / len(issues) if driven_m is not None and issues else None
+        yield metres_between(known, issues)
+
+
+def interventions_in(legs: Sequence[LegRecord]) -> list[str]:
+    """The issues of those legs with which people helped and of which the metres are known."""
+    known = (each for each in legs if metres_of([each]) is not None)
+    return [issue for leg in known for issue in _helped_with(leg)]
+
+
+def metres_between(legs: Sequence[LegRecord], interventions: Sequence[str]) -> float | None:
+    """How far robots drove from one to the next; None where there is none, or nothing is known."""
+    driven_m = metres_of(legs)
+    return driven_m / len(interventions) if driven_m is not None and interventions else None
 
 
 def _helped_with(leg: LegRecord) -> Iterator[str]:

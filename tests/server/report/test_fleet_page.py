@@ -44,6 +44,18 @@ def test_it_marks_what_failed_and_was_found_and_says_so(tmp_path: Path) -> None:
     assert "<b>tea" not in text
 
 
+def test_it_tells_first_what_there_is_to_know_first(tmp_path: Path) -> None:
+    figures = re.findall(r"<li><strong>([^<]*)</strong><span>([^<]*)<", page(tmp_path, day()))
+    assert figures == [
+        ("1 of 2", "requests done"),
+        ("4", "legs ended"),
+        ("100 m", "driven"),
+        ("2", "interventions"),
+        ("50 m", "between interventions"),
+        ("1.5 min", "saved by transfers, as planned"),
+    ]
+
+
 def test_every_chart_has_words_for_those_who_do_not_see_it(tmp_path: Path) -> None:
     text = page(tmp_path, day())
     charts = re.findall(
