@@ -6,6 +6,9 @@ FONT_PX = 11.0
 CHARACTER_PX = 0.62 * FONT_PX
 """How wide a character is at most on average; texts are laid out by this."""
 
+_READABLE = 0.75
+"""A drawing may be shown so much smaller."""
+
 COLORS = (
     "#4269d0", "#e0851b", "#3ca951", "#d6483b", "#8d5ad6",
     "#1a9fae", "#d4569a", "#8a7a2f", "#6f8796", "#7aa52c",
@@ -72,10 +75,14 @@ class Svg:
         )  # fmt: skip
 
     def figure(self, width: float, height: float, title: str, description: str) -> str:
-        """A part of a page, which styles it; who cannot see it is read the description."""
+        """A part of a page, which styles it; who cannot see it is read the description.
+
+        On a narrow page it gets smaller until its text could not be read.
+        """
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}" '
-            f'role="img" aria-label={quoteattr(f"{title}: {description}")}>\n'
+            f'style="min-width:{_READABLE * width:.0f}px" role="img" '
+            f"aria-label={quoteattr(f'{title}: {description}')}>\n"
             f"<title>{escape(title)}</title>\n<desc>{escape(description)}</desc>\n"
             + "\n".join(self._parts)
             + "\n</svg>\n"

@@ -118,8 +118,7 @@ class Base(Effector[BaseBody]):
 
     def driven(self) -> Driven:
         """What it has driven so far."""
-        self._way.note(self.body.odometry())
-        return self._way.so_far
+        return self._way.so_far(self.body.odometry())
 
     @property
     def following(self) -> WayFollower | None:

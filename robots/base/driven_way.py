@@ -15,15 +15,17 @@ class DrivenWay:
 
     def note(self, at: BasePose) -> None:
         """The wheels say that it is there now: straight from where they were noted last."""
-        if self._at is not None:
-            self._way_m += math.hypot(at.x - self._at.x, at.y - self._at.y)
+        self._way_m += self._since_m(at)
         self._at = at
 
     def stood(self, for_s: float) -> None:
         """It stood so long, as its way was barred."""
         self._barred_s += for_s
 
-    @property
-    def so_far(self) -> Driven:
-        """Since the beginning."""
-        return Driven(way_m=self._way_m, barred_s=self._barred_s)
+    def so_far(self, at: BasePose) -> Driven:
+        """Since the beginning; the wheels say that it is there now, which is not noted."""
+        return Driven(way_m=self._way_m + self._since_m(at), barred_s=self._barred_s)
+
+    def _since_m(self, at: BasePose) -> float:
+        was = self._at
+        return 0.0 if was is None else math.hypot(at.x - was.x, at.y - was.y)

@@ -1,4 +1,4 @@
-"""What the time of a fleet's legs went by with, by kind of request and by robot."""
+"""How the time of a fleet's legs was spent, by kind of request and by robot."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -20,7 +20,7 @@ _NOTE = (
 def times_by_kind(history: FleetHistory) -> Table:
     """Minutes by class, for the legs of each kind of request."""
     return _times(
-        history, ("times", "What the time went by with", _NOTE), "kind", partial(_kind, history)
+        history, ("times", "How the time was spent", _NOTE), "kind", partial(_kind, history)
     )
 
 
@@ -123,7 +123,7 @@ def each_stretch(history: FleetHistory) -> Table:
     ]
     heads = ("robot", "number", "request", "what", "from, s", "until, s")
     note = "Seconds of the site's clock; of standing before something only what was asked about."
-    return Table("stretches", "What each leg's time went by with", note, heads, rows, folded=True)
+    return Table("stretches", "How each leg's time was spent", note, heads, rows, folded=True)
 
 
 def _kind(history: FleetHistory, leg: LegRecord) -> str:

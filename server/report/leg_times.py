@@ -1,4 +1,4 @@
-"""What the time of a leg went by with: each of its seconds in one class, by what was journaled.
+"""How the time of a leg was spent: each of its seconds in one class, by what was journaled.
 
 The first five classes are those of Veloso et al. (2015), Figure 7.
 """
@@ -32,7 +32,7 @@ class TimeUse(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Seconds that went by with one thing."""
+    """Seconds that were spent on one thing."""
 
     begin_s: float
     end_s: float

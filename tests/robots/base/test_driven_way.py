@@ -1,5 +1,8 @@
 """A base knows how far it has driven, and how long its way was barred meanwhile."""
 
+import math
+from itertools import pairwise
+
 import pytest
 from cart_bench import CartBench
 from hypothesis import given
@@ -9,8 +12,6 @@ from mend.robots.base.body import BasePose
 from mend.robots.base.driven_way import DrivenWay
 from mend.robots.link.messages import Driven, IssueDetected, StepStarted
 from mend.tasks.intervention import Act, Intervention
-
-steps = st.lists(st.floats(0.0, 10.0), max_size=20)
 
 
 def driven(bench: CartBench) -> Driven:
@@ -42,9 +43,16 @@ def test_standing_before_what_bars_the_way_is_counted_and_standing_for_an_answer
     assert driven(bench).barred_s == before.barred_s
 
 
-@given(steps, steps)
-def test_where_wheels_were_first_noted_is_no_way(xs: list[float], ys: list[float]) -> None:
+@given(st.lists(st.tuples(st.floats(-10.0, 10.0), st.floats(-10.0, 10.0)), min_size=1))
+def test_a_way_is_as_long_as_its_parts_from_where_wheels_were_first_noted(
+    points: list[tuple[float, float]],
+) -> None:
     way = DrivenWay()
-    for x, y in zip(xs, ys, strict=False):
-        way.note(BasePose(100.0 + x, y, 0.0))
-    assert way.so_far.way_m <= 15.0 * max(0, min(len(xs), len(ys)) - 1)
+    for x, y in points:
+        way.note(BasePose(x, y, 0.0))
+    last = BasePose(*points[-1], 0.0)
+    parts = sum(math.dist(a, b) for a, b in pairwise(points))
+    assert math.isclose(way.so_far(last).way_m, parts, abs_tol=1e-6)
+    beyond = BasePose(last.x + 3.0, last.y + 4.0, 0.0)
+    assert math.isclose(way.so_far(beyond).way_m, parts + 5.0, abs_tol=1e-6)
+    assert math.isclose(way.so_far(last).way_m, parts, abs_tol=1e-6)
