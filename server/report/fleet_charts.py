@@ -84,7 +84,7 @@ def _waits(history: FleetHistory) -> Chart:
         values: dict[str, list[tuple[float, str]]] = {name: [] for name in _WAITS}
         for each in mine:
             for name, seconds in zip(
-                _WAITS, (begun_after_s(history, each), done_after_s(each)), strict=True
+                _WAITS, (begun_after_s(each), done_after_s(each)), strict=True
             ):
                 if seconds is not None:
                     values[name].append((seconds / 60, each.asked.request))
@@ -98,7 +98,7 @@ def _waits(history: FleetHistory) -> Chart:
 
 def _times_by_kind(history: FleetHistory) -> Chart:
     rows = []
-    for kind, legs in legs_by(history, history.kind_of).items():
+    for kind, legs in legs_by(history, lambda each: each.kind).items():
         requests = len({each.begun.booking for each in legs})
         values = {class_of(use): s / 60 / requests for use, s in split_of(legs).items()}
         noun = "request" if requests == 1 else "requests"

@@ -44,6 +44,10 @@ class RequestRecord:
     now: ev.RequestChanged
     asked_within: bool
     over_s: float | None = None
+    legs: list["LegRecord"] = field(default_factory=list, repr=False, compare=False)
+    """In the order in which they began."""
+    transfer: ev.PlannedTransfer | None = None
+    """What its latest plan said of its changing robots."""
 
     @property
     def kind(self) -> str:
@@ -66,8 +70,14 @@ class LegRecord:
     begun: ev.LegBegun
     ended: ev.LegEnded | None = None
     runs: dict[LegStage, list[ev.Event]] = field(default_factory=dict)
+    request: RequestRecord | None = None
     over_before: bool = False
     """Whether it was over before the span."""
+
+    @property
+    def kind(self) -> str:
+        """The kind of request that it is for."""
+        return "unknown" if self.request is None else self.request.kind
 
     @property
     def floors(self) -> set[str]:
@@ -100,16 +110,15 @@ class FleetHistory:
     site: UUID
     begins_s: float = 0.0
     ends_s: float = 0.0
-    requests: dict[str, RequestRecord] = field(default_factory=dict)
+    requests: list[RequestRecord] = field(default_factory=list)
     legs: list[LegRecord] = field(default_factory=list)
     dialogues: dict[UUID, DialogueRecord] = field(default_factory=dict)
     plans: list[ev.PlanChanged] = field(default_factory=list)
-    planned: dict[str, ev.PlannedTransfer] = field(default_factory=dict)
-    """By request, what its latest plan said of its changing robots."""
     told: list[ev.FleetTold] = field(default_factory=list)
     within: list[ev.FleetEvent] = field(default_factory=list)
     _stages: dict[UUID, tuple[LegRecord, LegStage]] = field(default_factory=dict)
-    _by_request: dict[str, list[LegRecord]] = field(default_factory=dict)
+    _asked: dict[str, RequestRecord] = field(default_factory=dict)
+    """The latest request of each name."""
     _open: dict[tuple[str, int], LegRecord] = field(default_factory=dict)
     _runs: set[UUID] = field(default_factory=set)
 
@@ -117,40 +126,29 @@ class FleetHistory:
     def of(cls, site: UUID, events: Sequence[ev.Event], span: Span) -> "FleetHistory":
         """What events, in the order of their journal, tell of a site's fleet."""
         history = cls(site)
-        for event, within in span.up_to_end(events):
-            if not isinstance(event, ev.SiteEvent) or event.site == site:
-                history._take(event, within)
+        mine = [e for e in events if not isinstance(e, ev.SiteEvent) or e.site == site]
+        for event, within in span.up_to_end(mine):
+            history._take(event, within)
         history.legs = [each for each in history.legs if not each.over_before]
-        for each in history.legs:
-            history._by_request.setdefault(each.begun.booking, []).append(each)
         # A change of plan may be told a little after what came of it.
         times_s = [each.at_s for each in history.within]
         history.begins_s, history.ends_s = min(times_s, default=0.0), max(times_s, default=0.0)
         if isinstance(span.begin, float):
             history.begins_s = span.begin
         if isinstance(span.end, float):
-            fleet = (e for e in events if isinstance(e, ev.FleetEvent) and e.site == site)
-            history.ends_s = min(span.end, max((each.at_s for each in fleet), default=0.0))
+            known_s = (each.at_s for each in mine if isinstance(each, ev.FleetEvent))
+            history.ends_s = min(span.end, max(known_s, default=0.0))
         return history
 
     @property
     def asked(self) -> list[RequestRecord]:
         """The requests that were made in the span."""
-        return [each for each in self.requests.values() if each.asked_within]
+        return [each for each in self.requests if each.asked_within]
 
     @property
     def ended(self) -> list[tuple[LegRecord, ev.LegEnded]]:
         """The legs that ended in the span."""
         return [(each, each.ended) for each in self.legs if each.ended is not None]
-
-    def legs_of(self, request: str) -> list[LegRecord]:
-        """The legs of a request, in the order in which they began."""
-        return self._by_request.get(request, [])
-
-    def kind_of(self, leg: LegRecord) -> str:
-        """The kind of request that a leg is for."""
-        request = self.requests.get(leg.begun.booking)
-        return "unknown" if request is None else request.kind
 
     # --- Taking events ------------------------------------------------------------------------
 
@@ -168,14 +166,20 @@ class FleetHistory:
 
     @_note.register
     def _(self, event: ev.RequestChanged, within: bool) -> None:
-        record = self.requests.setdefault(event.request, RequestRecord(event, event, within))
+        record = self._asked.get(event.request)
+        if record is None or record.over_s is not None:
+            # Who is done with a name may use it again.
+            record = self._asked[event.request] = RequestRecord(event, event, within)
+            self.requests.append(record)
         record.now = event
         record.over_s = event.at_s if STATUS.is_last(record.status) else None
 
     @_note.register
     def _(self, event: ev.LegBegun, within: bool) -> None:  # noqa: ARG002
-        leg = LegRecord(event)
+        leg = LegRecord(event, request=self._asked.get(event.booking))
         self.legs.append(leg)
+        if leg.request is not None:
+            leg.request.legs.append(leg)
         self._open[event.robot, event.number] = leg
         for stage in LegStage:
             self._stages[run_of(self.site, event.robot, event.number, stage)] = leg, stage
@@ -190,7 +194,9 @@ class FleetHistory:
     @_note.register
     def _(self, event: ev.PlanChanged, within: bool) -> None:
         self.plans += [event] if within else []
-        self.planned |= {each.request: each for each in event.transfers}
+        for each in event.transfers:
+            if each.request in self._asked:
+                self._asked[each.request].transfer = each
 
     @_note.register
     def _(self, event: ev.FleetTold, within: bool) -> None:

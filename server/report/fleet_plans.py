@@ -2,7 +2,7 @@
 
 from mend.fleet.requests import LegAction
 from mend.server.journal import events as ev
-from mend.server.report.fleet_history import FleetHistory, LegRecord
+from mend.server.report.fleet_history import FleetHistory, LegRecord, RequestRecord
 from mend.server.report.table import Cell, Table
 
 
@@ -20,16 +20,13 @@ def plan_changes(history: FleetHistory) -> Table:
 def transfers(history: FleetHistory) -> Table:
     """What one robot left for another, where, how long it lay there, and what that was to save."""
     rows: list[tuple[Cell, ...]] = []
-    told = set[str]()
-    for leg, ended in history.ended:
-        if leg.begun.action != LegAction.GIVE or ended.outcome != "done":
-            continue
-        request, take = leg.begun.booking, _taken(history, leg, ended.at_s)
-        plan = None if request in told else history.planned.get(request)
-        told.add(request)
+    for leg, ended in _given(history):
+        take = _taken(leg, ended.at_s)
+        # However often it changes robots, it is compared with one robot once.
+        plan = leg.request.transfer if leg.request and leg is _first_given(leg.request) else None
         rows.append(
             (
-                request,
+                leg.begun.booking,
                 leg.begun.place,
                 leg.begun.robot,
                 ended.at_s,
@@ -58,13 +55,26 @@ _TRANSFER_HEADS = (
 
 def saved_s(history: FleetHistory) -> list[float]:
     """How much sooner what changed robots in the span was to be delivered, as far as is known."""
-    given = {
-        leg.begun.booking
-        for leg, ended in history.ended
-        if leg.begun.action == LegAction.GIVE and ended.outcome == "done"
-    }
-    plans = (history.planned[each] for each in given if each in history.planned)
-    return [each.sooner_s for each in plans if each.sooner_s is not None]
+    plans = (
+        leg.request.transfer
+        for leg, _ in _given(history)
+        if leg.request is not None and leg is _first_given(leg.request)
+    )
+    return [each.sooner_s for each in plans if each is not None and each.sooner_s is not None]
+
+
+def _given(history: FleetHistory) -> list[tuple[LegRecord, ev.LegEnded]]:
+    """The legs in which robots left something for another."""
+    return [(leg, ended) for leg, ended in history.ended if _is_given(leg)]
+
+
+def _first_given(request: RequestRecord) -> LegRecord:
+    return next(each for each in request.legs if _is_given(each))
+
+
+def _is_given(leg: LegRecord) -> bool:
+    gives = leg.begun.action == LegAction.GIVE
+    return gives and leg.ended is not None and leg.ended.outcome == "done"
 
 
 def _saved(history: FleetHistory) -> str:
@@ -82,13 +92,14 @@ def _saved(history: FleetHistory) -> str:
     return f"{saved_min:.1f} min were to be saved in all, with {len(sooner_s)} {noun}. {note}"
 
 
-def _taken(history: FleetHistory, given: LegRecord, since_s: float) -> ev.LegEnded | None:
-    """The leg in which another robot took what was left."""
+def _taken(given: LegRecord, since_s: float) -> ev.LegEnded | None:
+    """How the leg ended in which another robot took what was left."""
+    ends = [each.ended for each in given.request.legs] if given.request else []
     return next(
         (
             ended
-            for _, ended in history.ended
-            if ended.booking == given.begun.booking
+            for ended in ends
+            if ended is not None
             and ended.action in (LegAction.TAKE, LegAction.COLLECT)
             and ended.outcome == "done"
             and ended.at_s >= since_s

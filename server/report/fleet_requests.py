@@ -24,7 +24,7 @@ def requests_by_kind(history: FleetHistory) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for kind in sorted({each.kind for each in history.asked}):
         mine = [each for each in history.asked if each.kind == kind]
-        floors = [len(_floors(history, each)) for each in mine]
+        floors = [len(_floors(each)) for each in mine]
         outcomes = [outcome_of(each) for each in mine]
         rows.append(
             (
@@ -48,7 +48,7 @@ def waits_by_kind(history: FleetHistory) -> Table:
     rows = []
     for kind in sorted({each.kind for each in history.asked}):
         mine = [each for each in history.asked if each.kind == kind]
-        begins = [each for each in (begun_after_s(history, e) for e in mine) if each is not None]
+        begins = [each for each in (begun_after_s(e) for e in mine) if each is not None]
         ends = [each for each in map(done_after_s, mine) if each is not None]
         rows.append(
             (
@@ -80,15 +80,13 @@ def waits_by_kind(history: FleetHistory) -> Table:
 def each_request(history: FleetHistory) -> Table:
     """Every request, as it was met."""
     rows = []
-    for name, request in sorted(history.requests.items(), key=lambda each: each[1].asked.at_s):
-        if not request.asked_within:
-            continue
-        legs = history.legs_of(name)
+    for request in history.asked:
+        legs = request.legs
         rows.append(
             (
-                name,
+                request.asked.request,
                 request.kind.replace("_", " "),
-                ", ".join(sorted(_floors(history, request))),
+                ", ".join(sorted(_floors(request))),
                 request.status.replace("_", " "),
                 request.asked.at_s,
                 request.wanted_s,
@@ -116,9 +114,9 @@ def each_request(history: FleetHistory) -> Table:
     return Table("each_request", "Each request", note, heads, rows, folded=True)
 
 
-def begun_after_s(history: FleetHistory, request: RequestRecord) -> float | None:
+def begun_after_s(request: RequestRecord) -> float | None:
     """How long it was wanted when its first robot set out; None where none has."""
-    legs = history.legs_of(request.asked.request)
+    legs = request.legs
     return max(0.0, legs[0].begun.at_s - request.wanted_s) if legs else None
 
 
@@ -129,8 +127,8 @@ def done_after_s(request: RequestRecord) -> float | None:
     return max(0.0, request.over_s - request.wanted_s)
 
 
-def _floors(history: FleetHistory, request: RequestRecord) -> set[str]:
-    return {floor for leg in history.legs_of(request.asked.request) for floor in leg.floors}
+def _floors(request: RequestRecord) -> set[str]:
+    return {floor for leg in request.legs for floor in leg.floors}
 
 
 def _minutes(seconds: Sequence[float], of: Callable[[Sequence[float]], float]) -> float | None:

@@ -1,7 +1,6 @@
 """How the time of a fleet's legs was spent, by kind of request and by robot."""
 
 from collections.abc import Callable, Sequence
-from functools import partial
 
 from mend.server.report.fleet_history import FleetHistory, LegRecord
 from mend.server.report.leg_times import TimeUse, stretches_of, time_split
@@ -19,9 +18,7 @@ _NOTE = (
 
 def times_by_kind(history: FleetHistory) -> Table:
     """Minutes by class, for the legs of each kind of request."""
-    return _times(
-        history, ("times", "How the time was spent", _NOTE), "kind", partial(_kind, history)
-    )
+    return _times(history, ("times", "How the time was spent", _NOTE), "kind", _kind)
 
 
 def times_by_robot(history: FleetHistory) -> Table:
@@ -76,7 +73,7 @@ def each_leg(history: FleetHistory) -> Table:
                 begun.robot,
                 begun.number,
                 begun.booking,
-                _kind(history, leg),
+                _kind(leg),
                 begun.action.replace("_", " "),
                 begun.start,
                 begun.place,
@@ -126,5 +123,5 @@ def each_stretch(history: FleetHistory) -> Table:
     return Table("stretches", "How each leg's time was spent", note, heads, rows, folded=True)
 
 
-def _kind(history: FleetHistory, leg: LegRecord) -> str:
-    return history.kind_of(leg).replace("_", " ")
+def _kind(leg: LegRecord) -> str:
+    return leg.kind.replace("_", " ")

@@ -166,3 +166,18 @@ def test_every_request_is_counted_once_whatever_time_it_was(last_s: float, unit:
     assert table.columns[0] == f"from, {unit}"
     assert 10 <= len(table.rows) <= 30
     assert sum(int(count or 0) for _, _, *counts in table.rows for count in counts) == 3
+
+
+def test_a_name_that_is_used_again_is_another_request() -> None:
+    again = LegMaker("r0", 3, "mail", LegAction.COLLECT)
+    events = [*day(), asked("mail", "booked", 200.0), again.begun(210.0), again.ended(240.0)]
+    (transports,) = [row for row in rows(events, "requests") if row[0] == "transport"]
+    assert transports == ("transport", 2, 1, 1, 1, 0, 1)
+    assert [row[0] for row in rows(events, "each_request")] == ["mail", "tea", "mail"]
+    assert rows(events, "each_request")[-1][6:9] == (210.0, None, "r0")
+
+
+def test_the_clock_of_another_site_says_nothing_of_a_span() -> None:
+    other = asked("tea", "booked", 1000.0).model_copy(update={"site": UUID(int=8)})
+    span = Span(35.0, 100.0)
+    assert rows([other, *day()], "legs", span) == rows(day(), "legs", span)
