@@ -131,12 +131,9 @@ MAKES: list[Callable[[RunMaker, float], ev.Event]] = [
     RunMaker.done,
     RunMaker.lost,
     RunMaker.back,
+    *(lambda run, time, phase=phase: run.step(time, phase) for phase in (None, *Phase)),
     *(
-        lambda run, time, phase=phase: run.step(time, phase)  # type: ignore[misc]
-        for phase in (None, *Phase)
-    ),
-    *(
-        lambda run, time, issue=issue: run.raised(time, issue)  # type: ignore[misc]
+        lambda run, time, issue=issue: run.raised(time, issue)
         for issue in ("blocked", "lost", "elevator_help", "item_not_taken", "unheard_of")
     ),
 ]
