@@ -29,6 +29,7 @@ from mend.server.fleets.runs import Runs
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Document, Entry, Journal
 from mend.server.runtime.views import RunStatus
+from mend.server.sites.odometer import Odometer
 from mend.server.sites.requests import FleetOptions
 from mend.server.sites.site import Site
 from mend.tasks.plugins import load_plugins
@@ -77,6 +78,8 @@ class FleetAtWork:
         self._hears: asyncio.Task[None] | None = None
         self._barred: dict[str, Found] = {}
         """What robots have found on the way to the place of the leg that they are on."""
+        self._set_out: dict[str, Odometer | None] = {}
+        """What robots had driven when they set out for the leg that they are on."""
         self._kept: FleetRecord | None = None
         self._noted: list[ev.Event] = []
         self._alarms = Alarms(lambda: self.now_s)
@@ -139,6 +142,7 @@ class FleetAtWork:
         while due := [e for e in self.dispatcher.legs_to_begin(now_s) if self._site.rests(e.robot)]:
             start = self._at(due[0].robot)
             self.dispatcher.began(due[0], now_s)
+            self._set_out[due[0].robot] = self._site.odometer(due[0].robot)
             self._noted.append(self._news.begun(due[0], start))
         return unwanted
 
@@ -271,7 +275,9 @@ class FleetAtWork:
         if why is not None:
             # Others fetch what it has, and do what it was to do.
             self.dispatcher.robot_failed(robot, self._met_at(robot), why, now_s)
-        self._noted.append(self._news.ended(leg, end))
+        odometer, before = self._site.odometer(robot), self._set_out.pop(robot, None)
+        driven = None if odometer is None else odometer.since(before)
+        self._noted.append(self._news.ended(leg, end, driven))
 
     def _at(self, robot: str) -> str:
         """The place that a robot is nearest to, as far as is known."""

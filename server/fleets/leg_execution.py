@@ -95,7 +95,7 @@ class LegExecution:
     async def _stages(self, *, at_once: bool) -> LegEnd:
         leg, place = self._leg, self._places.in_scene(self._leg.place)
         visits = leg.action is LegAction.VISIT
-        doing = run_of(self._site.id, leg, LegStage.DO)
+        doing = run_of(self._site.id, leg.robot, leg.number, LegStage.DO)
         if visits or not (at_once or await self._runs.has_run(doing)):
             end = await self._done(LegStage.GO, way_of(place))
             if end.outcome is not LegOutcome.DONE:
@@ -119,7 +119,8 @@ class LegExecution:
 
     async def _done(self, stage: LegStage, tree: TaskTreeDefinition) -> LegEnd:
         """What came of one of its runs."""
-        leg, run = self._leg, run_of(self._site.id, self._leg, stage)
+        leg = self._leg
+        run = run_of(self._site.id, leg.robot, leg.number, stage)
         request = run_request(self._site.id, leg, self._options)
         while not await self._is_begun(run, request, tree):
             if self._broken_off:

@@ -44,9 +44,9 @@ class LegStage(StrEnum):
     DO = "do"
 
 
-def run_of(site: UUID, leg: Leg, stage: LegStage) -> UUID:
-    """The id of the run: the same one, however often it is asked for."""
-    return uuid5(site, f"{leg.robot} {leg.number} {stage}")
+def run_of(site: UUID, robot: str, number: int, stage: LegStage) -> UUID:
+    """The id of the run of a robot's leg: the same one, however often it is asked for."""
+    return uuid5(site, f"{robot} {number} {stage}")
 
 
 def run_request(site: UUID, leg: Leg, options: FleetOptions) -> RunRequest:

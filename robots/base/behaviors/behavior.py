@@ -84,6 +84,23 @@ UNHEARD = "nobody_answers"
 """The issue that is settled by nothing but somebody's word that a message was heard."""
 
 
+def phase_of(step: BaseStep) -> Phase:
+    """What a step is for."""
+    match step:
+        case Drive(phase=phase):
+            return phase
+        case GetIn() | RideUntilThere():
+            return Phase.RIDE
+        case AwaitItem():
+            return Phase.LOAD
+        case AwaitTaken():
+            return Phase.UNLOAD
+        case Tell():
+            return Phase.TELL
+        case Charging():
+            return Phase.CHARGE
+
+
 @dataclass(frozen=True, slots=True)
 class BaseSituation:
     """What a behavior may know when it lays out its steps.

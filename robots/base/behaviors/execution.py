@@ -15,6 +15,7 @@ from mend.robots.base.behaviors.behavior import (
     RideUntilThere,
     StandingStep,
     Tell,
+    phase_of,
 )
 from mend.robots.base.behaviors.driving import NEAR_M, Driving
 from mend.robots.base.behaviors.handling import Handling
@@ -165,7 +166,9 @@ class BaseExecution(Execution[BaseProgress]):
 
     def _take(self, step: BaseStep) -> Routine[None]:
         """One step. Raises `Interruption`."""
-        self._report(StepStarted(execution=self.id, step=self.step, name=step.name))
+        self._report(
+            StepStarted(execution=self.id, step=self.step, name=step.name, phase=phase_of(step))
+        )
         match step:
             case Drive():
                 yield from self._driving.take(step)
