@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from mend.server.journal import events as ev
+    from mend.server.report.span import Span
 
 
 def report(
@@ -39,21 +40,37 @@ def report(
     ] = None,
 ) -> None:
     """Write a report of requests, legs and plans of a site's fleet."""
+    from mend.server.report.span import Span
+
+    with told_plainly():
+        write_report(journal, output, csv=csv, span=Span.read(begin, until), site=site)
+    typer.echo(output)
+
+
+def write_report(
+    journal: Path,
+    output: Path,
+    *,
+    csv: Path | None = None,
+    span: "Span | None" = None,
+    site: UUID | None = None,
+) -> None:
+    """Write the page, and its tables to a folder. Raises `CommandLineError` where there is none."""
     from mend.server.report.fleet_history import FleetHistory
     from mend.server.report.fleet_page import tables_of, write_fleet_csv, write_fleet_report
     from mend.server.report.span import Span
 
-    with told_plainly():
-        span = Span.read(begin, until)
-        events = _events_of(journal)
-        history = FleetHistory.of(_site_of(journal, events, site), events, span)
-        if not history.within:
-            raise CommandLineError(f"'{journal}' has no events of this fleet in that time")
-        tables = tables_of(history)
-        write_fleet_report(output, history, tables)
-        if csv is not None:
-            write_fleet_csv(csv, history, tables)
-    typer.echo(output)
+    events = _events_of(journal)
+    history = FleetHistory.of(
+        _site_of(journal, events, site), events, span or Span.read(None, None)
+    )
+    if not history.within:
+        raise CommandLineError(f"'{journal}' has no events of this fleet in that time")
+    tables = tables_of(history)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    write_fleet_report(output, history, tables)
+    if csv is not None:
+        write_fleet_csv(csv, history, tables)
 
 
 def _events_of(journal: Path) -> "list[ev.Event]":

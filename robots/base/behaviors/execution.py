@@ -130,7 +130,7 @@ class BaseExecution(Execution[BaseProgress]):
         steps = self._progress.steps
         before = steps[self._done - 1] if self._done else None
         stays = self._done == len(steps) or isinstance(steps[self._done], StandingStep)
-        return stays and isinstance(before, Drive) and not self._driving.is_at(before.to)
+        return stays and isinstance(before, Drive) and not self._driving.is_about_at(before)
 
     def _forget_other_offers(self) -> None:
         """What was offered where it stood is offered no more by who sets about something else."""
