@@ -102,7 +102,7 @@ class Cabin:
         if self.state is CabinState.MOVING:
             assert self.heading_for is not None, "it moves to a floor"
             self.floor, self.heading_for = self.heading_for, None
-            self.calls = [e for e in self.calls if e.robot not in inside or e.to != self.floor]
+            self._take_leave(inside)
             self._open(time_s)
             return True
         served = self.serving(inside)
@@ -127,7 +127,7 @@ class Cabin:
                 return
         elif served.robot in inside:
             if served.to == self.floor:
-                self.withdraw(served.robot)
+                self._take_leave(inside)
                 return
         elif served.begin == self.floor:
             if time_s - self.since_s < HELD_S:
@@ -136,6 +136,14 @@ class Cabin:
         if door_is_free:
             self.state = _CHANGES.require(self.state, CabinState.SHUT)
             self.until_s = time_s + DOOR_S
+
+    def _take_leave(self, inside: Sequence[int]) -> None:
+        """Who is where they want to be wants nothing more; who is not waits for another button."""
+        for call in [each for each in self.calls if each.robot in inside and each.to == self.floor]:
+            if call.wants == self.floor:
+                self.calls.remove(call)
+            else:
+                call.to = None
 
     def _next_floor(self, served: Call, inside: Sequence[int]) -> str:
         assert served.to is not None, "it was pressed"
