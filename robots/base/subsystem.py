@@ -28,6 +28,7 @@ from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.monitor import AnyMonitor, for_view
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
+    Avoid,
     Location,
     Look,
     Looked,
@@ -69,6 +70,16 @@ class BaseSubsystem:
     @property
     def behaviors(self) -> Collection[str]:
         return self._behaviors
+
+    @property
+    def avoids_ways(self) -> bool:
+        """Whether it knows ways by names, so that it keeps off those that it is told of."""
+        return self.effector.ways.has_places
+
+    def avoid(self, told: Avoid) -> None:
+        """Keep off ways where others lead."""
+        ways = {frozenset(each.between): each.until for each in told.ways}
+        self.effector.closed.tell(ways)
 
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> BaseExecution:
         """What a start command asks for, not begun. Raises `CommandError`."""

@@ -21,6 +21,7 @@ from mend.robots.base.behaviors.handling import Handling
 from mend.robots.base.behaviors.progress import BaseProgress
 from mend.robots.base.behaviors.riding import Riding
 from mend.robots.base.behaviors.watch import BaseWatch
+from mend.robots.base.way_ahead import WayAhead
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import Execution
 from mend.robots.execution.execution_state import ExecutionState
@@ -47,27 +48,28 @@ class BaseExecution(Execution[BaseProgress]):
         super().__init__(id, progress, base, report)
         self._base = base
         self._watch = BaseWatch(id, behavior, progress, base, monitors, report)
-        self._driving = Driving(base, progress, self._watch)
+        self._driving = Driving(base, progress, self._watch, report)
         self._riding = Riding(base, self._driving, progress, self._watch)
         self._handling = Handling(base, progress, self._watch)
         self._done = 0
         self._asked_whether_heard = False
 
-    def way_is_clear(self) -> bool:
+    def way_ahead(self) -> WayAhead:
         """Whether the step under way, or else the next, could be taken, as far as is seen."""
         left = self._progress.steps[self._done :]
         try:
             match left[0] if left else None:
                 case Drive() as drive:
-                    return self._base.gets_to(drive.to)
-                case GetIn() as step:
-                    is_open = self._base.elevators.is_open_for(step.ride)
-                    return is_open and self._base.gets_to(step.ride.inside)
-                case RideUntilThere() as step:
-                    return self._riding.is_over(step.ride)
+                    return self._base.way_to(drive.to, self._watch.going_round.patience_s())
+                case GetIn() as step if self._base.elevators.is_open_for(step.ride):
+                    return self._base.way_to(step.ride.inside, 0.0)
+                case RideUntilThere() as step if self._riding.is_over(step.ride):
+                    return WayAhead.FREE
+                case GetIn() | RideUntilThere():
+                    return WayAhead.BARRED
         except CommandError:
-            return False
-        return True
+            return WayAhead.BARRED
+        return WayAhead.FREE
 
     def felt(self) -> FeltLoad | None:
         """What the basket feels that is not what the step under way, or else the next, needs."""

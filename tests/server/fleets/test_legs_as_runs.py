@@ -1,7 +1,7 @@
 """A fleet hands its legs out as runs, once each, and follows what becomes of them."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -50,6 +50,11 @@ class FakeSite:
         self.gone: set[str] = set()
         self.standing: dict[str, tuple[float, float, float]] = {}
         self.runs: dict[str, UUID] = {}
+        self.kept_off: set[frozenset[str]] = set()
+        self.stands_still = False
+
+    def keep_off(self, closed: Mapping[frozenset[str], float]) -> None:
+        self.kept_off = set(closed)
 
     def rests(self, robot: str) -> bool:
         return robot not in self.busy | self.gone
@@ -64,6 +69,8 @@ class FakeSite:
         return self.standing.get(robot)
 
     def let_time_pass(self, until_s: float, rate: float | None) -> bool:  # noqa: ARG002
+        if self.stands_still:
+            return True
         self.time.heard(until_s)
         asyncio.get_running_loop().call_soon(self.changed)
         return True
