@@ -1,6 +1,7 @@
 """A base that drives: sending it on its way, a control cycle at a time."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,7 @@ from mend.robots.base.motion.surroundings import Seen, Surroundings, hidden_behi
 from mend.robots.base.motion.warming_up import warm_up
 from mend.robots.base.motion.way_follower import WayFollower
 from mend.robots.base.way_ahead import WayAhead
-from mend.robots.base.ways import Ways
+from mend.robots.base.ways import Ride, Ways
 from mend.robots.base.whereabouts import AlwaysKnown, Whereabouts
 from mend.robots.execution.effector import Effector
 
@@ -140,9 +141,31 @@ class Base(Effector[BaseBody]):
         )
 
     def bar(self, between: tuple[str, str]) -> None:
-        """Remember that what leaves it no way on is between these places."""
+        """Remember that what leaves it no way on is between these places, the one behind first."""
         self._barrier = between
-        self.closed.bar(between, self.body.time_s())
+        for lane in self.ways.together(between):
+            self.closed.bar(lane, between[0], self.body.time_s())
+
+    def rode(self, between: tuple[str, str]) -> bool:
+        """It has ridden an elevator; whether that counted as closed."""
+        lanes = self.ways.together(between)
+        closed = not self.closed.doubtful(self.body.time_s()).keys().isdisjoint(lanes)
+        for lane in lanes:
+            self.closed.passed(lane)
+        return closed
+
+    def rides_round(self, ride: Ride, to: BasePose) -> Sequence[Ride]:
+        """The rides to a pose that take no elevator that is closed, nor this one; none if none do.
+
+        Raises `CommandError`.
+        """
+        shut = {**self._closed_now, **dict.fromkeys(self.ways.together(ride.between))}
+        rides = self.ways.rides(self.body.pose(), to, shut)
+        return () if any(frozenset(each.between) in shut for each in rides) else rides
+
+    def is_closed(self, ride: Ride) -> bool:
+        """Whether its elevator counts as closed."""
+        return frozenset(ride.between) in self._closed_now
 
     def round_takes_s(self, to: BasePose) -> float:
         """How much longer than the way that is barred another one takes; infinite without one.

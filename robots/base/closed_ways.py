@@ -34,12 +34,11 @@ class ClosedWays:
             self._barred.pop(opened, None)
         self._told = dict(told)
 
-    def bar(self, between: tuple[str, str], now_s: float) -> None:
-        """It is barred, as was seen from the first of the two places."""
-        lane = frozenset(between)
+    def bar(self, lane: Lane, origin: str, now_s: float) -> None:
+        """It is barred, as was seen from one of its places."""
         self._free.pop(lane, None)
         self._passed.discard(lane)
-        self._barred[lane] = between[0], now_s + KEPT_S
+        self._barred[lane] = origin, now_s + KEPT_S
 
     def free(self, lane: Lane) -> None:
         """It is seen to be free, from where it was found to be barred."""

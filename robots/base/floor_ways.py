@@ -1,7 +1,7 @@
 """Ways through a building: along its lanes, and in its elevators, by what the robot's map says."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -92,7 +92,10 @@ class FloorWays:
         if floor == goal_floor:
             return ()
         start, goal = self._on_map(here), self._on_map(to)
-        begin, end = self._first(floor, start, closed), self._nearest(goal_floor, goal)
+        in_cabin = any(n == floor and math.dist(at, start) < CABIN_M for n, at in self._cabins)
+        # Who stands before one elevator may take another.
+        begin = self._first(floor, start, closed, () if in_cabin else self._stops)
+        end = self._nearest(goal_floor, goal)
         path = _named_path(_kept_off(self._all, closed), begin, end, self._speed_m_s)
         rides = []
         for number, (a, b) in enumerate(pairwise(path)):
@@ -157,6 +160,10 @@ class FloorWays:
                 nearest_m, found = off_m, (way.a, way.b) if along < 0.0 else (way.b, way.a)
         return found
 
+    def together(self, between: tuple[str, str]) -> Collection[Lane]:
+        """The ways that are closed with one: of an elevator all its rides."""
+        return self._all.together(between)
+
     def along(self, lane: Lane, here: BasePose) -> Mapping[str, float] | None:
         """How far a pose on a lane is from each of its ends (m); None beside it."""
         floor = self.floor(here)
@@ -186,6 +193,7 @@ class FloorWays:
             there=self._pose(to_floor, stop_there, out),
             out_at=self._pose(to_floor, out, out),
             called=self._building.document.elevators[elevator].called_by is Caller.ROBOTS,
+            between=(begin, end),
         )
 
     def _outside(self, floor: str, stop: Point) -> Point:
@@ -219,7 +227,7 @@ class FloorWays:
             raise CommandError(f"no lane leads from {first} to {last} but through {through[0]}")
         return places
 
-    def _first(self, floor: str, start: Point, closed: Closed) -> str:
+    def _first(self, floor: str, start: Point, closed: Closed, but: Collection[str] = ()) -> str:
         """The place that a way begins with: of a lane that was found barred, the one before that.
 
         Raises `CommandError`.
@@ -230,7 +238,7 @@ class FloorWays:
                 beyond = next(iter(lane - {origin}), origin)
                 if ends is not None and ends[beyond] > _ON_LANE_M:
                     return origin
-        return self._nearest(floor, start)
+        return self._nearest(floor, start, but)
 
     def _ends_m(self, lane: Lane, point: Point) -> Mapping[str, float] | None:
         """How far a point on a lane is from each of its ends; None beside it."""
@@ -242,12 +250,12 @@ class FloorWays:
             return None
         return {each.name: _away_m(each, point) for each in places}
 
-    def _nearest(self, floor: str, point: Point) -> str:
-        """The nearest place that no wall is before. Raises `CommandError`."""
+    def _nearest(self, floor: str, point: Point, but: Collection[str] = ()) -> str:
+        """The nearest place that no wall is before, `but` these. Raises `CommandError`."""
         places, walls = self._graphs[floor].places, self._building.floors[floor].wall_segments
         for place in sorted(places, key=lambda each: _away_m(each, point)):
             way = np.array([*point, place.x_m, place.y_m])
-            if not len(crossed_by(way, walls)):
+            if place.name not in but and not len(crossed_by(way, walls)):
                 return place.name
         raise CommandError(f"there are walls all round ({point[0]:.2f}, {point[1]:.2f}) on {floor}")
 

@@ -91,6 +91,7 @@ class BaseSubsystem:
             target=self._target(getattr(parameters, "place", None), start.target),
             ways=self.effector.ways,
             basket=self.effector.basket,
+            closed=self.effector.closed.at(self.effector.body.time_s()),
         )
         steps = behavior.steps(parameters, situation)
         if not self.effector.whereabouts.is_lost:

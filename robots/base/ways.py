@@ -1,6 +1,6 @@
 """The ways that a base knows: which points to pass to a pose."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -15,7 +15,7 @@ class Ride:
 
     One waits at `wait_at`, None for who is in the cabin already, gets in to `inside`, is `there`
     once it has arrived, and gets out to `out_at`. `called`: whether the robot itself can call it;
-    people must otherwise.
+    people must otherwise. `between`: where it stops then, by the names of the map.
     """
 
     elevator: str
@@ -26,6 +26,7 @@ class Ride:
     there: BasePose
     out_at: BasePose
     called: bool
+    between: tuple[str, str] = ("", "")
 
 
 class Ways(Protocol):
@@ -58,6 +59,10 @@ class Ways(Protocol):
 
     def leads_round(self, here: BasePose, to: BasePose, closed: Closed) -> bool:
         """Whether a way leads to a pose on the same floor by nothing that is closed."""
+        ...
+
+    def together(self, between: tuple[str, str]) -> Collection[Lane]:
+        """The ways that are closed with one: of an elevator all its rides."""
         ...
 
     def along(self, lane: Lane, here: BasePose) -> Mapping[str, float] | None:
@@ -114,6 +119,10 @@ class StraightWays:
     def leads_round(self, here: BasePose, to: BasePose, closed: Closed) -> bool:  # noqa: ARG002
         """Never: it knows of one way."""
         return False
+
+    def together(self, between: tuple[str, str]) -> Collection[Lane]:
+        """That one alone."""
+        return [frozenset(between)]
 
     def along(self, lane: Lane, here: BasePose) -> Mapping[str, float] | None:  # noqa: ARG002
         """None: it knows of no lanes."""

@@ -9,6 +9,7 @@ from functools import partial
 from typing import TypeVar
 from uuid import UUID, uuid4
 
+from mend.documents.problem import list_names
 from mend.errors import ConflictError, NotFoundError, RefusalError
 from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
@@ -298,12 +299,22 @@ class FleetAtWork:
 
     async def found(self, way: WayFound, author: ev.Author | None) -> None:
         """A way was found blocked, or open. Raises as `Dispatcher.found`."""
-        a, b = way.between
+        a, b = way.between or self._stops_of(way.elevator or "")
+        what = f"the way between {a} and {b}" if way.elevator is None else way.elevator
         found = Found(finding=Finding(way.finding), between=(a, b), until_s=way.until_s)
         async with self._told():
             self.dispatcher.found(found, self.now_s)
             finding = way.finding.replace("_", " ")
-            self._note(f"said of the way between {a} and {b}: {finding}", author)
+            self._note(f"said of {what}: {finding}", author)
+
+    def _stops_of(self, elevator: str) -> list[str]:
+        """Two places where it stops. Raises `NotFoundError`."""
+        elevators = self.dispatcher.building.document.elevators
+        if elevator not in elevators:
+            raise NotFoundError(
+                f"there is no elevator '{elevator}'; there are {list_names(list(elevators))}"
+            )
+        return [f"{floor}/{at}" for floor, at in elevators[elevator].stops.items()][:2]
 
     async def take_out(self, robot: str, reason: str, author: ev.Author | None) -> None:
         """A robot is to do nothing more for now; others fetch what it has.

@@ -38,7 +38,7 @@ def is_led_round(
 
     Where none does, people are to help, and the plan stays: nobody else would get there either.
     """
-    shut = {*closed, frozenset(found.between)}
+    shut = {*closed, *graph.together(found.between)}
     open_ = [e for e in graph.ways if not e.closed and frozenset((e.a, e.b)) not in shut]
     reached, new = set[str](), {found.between[0]}
     while new:

@@ -12,8 +12,8 @@ from mend.sim.building.gatherings import blocked_lanes
 from mend.sim.building.scene import scene_of
 from mend.tasks.scene import Scene
 
-ROOMS = 60
-SHARE = 0.04
+ROOMS = 26
+SHARE = 0.06
 SPEED_M_S = 1.0
 
 Lane = frozenset[str]

@@ -439,3 +439,9 @@ async def test_a_robot_with_nothing_to_do_makes_way_for_one_that_comes() -> None
 
 def _place_of_r0(dispatcher: Dispatcher) -> str:
     return dispatcher.building.graph.places[dispatcher.fleet.robots["r0"].place].name
+
+
+async def test_who_says_that_an_elevator_is_dead_names_one_that_there_is() -> None:
+    async with working("a") as work:
+        with pytest.raises(NotFoundError, match="there is no elevator 'lift9'"):
+            await work.fleet.found(WayFound(finding="elevator_dead", elevator="lift9"), None)
