@@ -132,6 +132,8 @@ class Expectation(StrEnum):
     """The object is between the robot's fingers."""
     WAY_CLEAR = "way_clear"
     """Nothing is in the arm's way."""
+    LED_ROUND = "led_round"
+    """Another way leads round what is in the way of a base."""
     VIEW_CLEAR = "view_clear"
     """The head camera shows the table."""
     LOCATED = "located"

@@ -17,6 +17,7 @@ from mend.robots.link.messages import (
     IDENTITY,
     PROTOCOL_VERSION,
     ActiveExecution,
+    Avoid,
     ClipTaken,
     CommandBody,
     Driven,
@@ -106,6 +107,7 @@ class Robot:
             time=self.time_s(),
             room=next((each.room for each in subsystems if each.room is not None), None),
             keeps_clear=all(each.keeps_clear for each in subsystems),
+            avoids_ways=any(each.avoids_ways for each in subsystems),
         )
 
     @property
@@ -250,6 +252,9 @@ class Robot:
             case SlowDown():
                 for each in self._subsystems:
                     each.effector.slow_down(body.factor)
+            case Avoid():
+                for each in self._subsystems:
+                    each.avoid(body)
             case TakePicture():
                 self._take_picture(command_id, body)
             case Shutdown():

@@ -391,6 +391,13 @@ class Transcript:
         text = f"moves again, at step {event.step}"
         return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
+    @lines.register
+    def _(self, event: ev.WayFound) -> list[Line]:
+        finding, way = event.finding.replace("_", " "), " and ".join(event.between)
+        then = "" if event.finding == "open" else "; it goes round"
+        text = f"found the way between {way}: {finding}{then}"
+        return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
+
 
 class StartedRun(Protocol):
     """How a run was begun."""

@@ -4,6 +4,7 @@ from typing import Any
 
 from mend.robots.agent import Emit, EmitPicture
 from mend.robots.link.messages import (
+    Avoid,
     CommandBody,
     Driven,
     Finished,
@@ -34,7 +35,7 @@ _SEEN_AT_ONCE = (StepStarted, IssueDetected, Finished, Looked, Rejected, Held)
 _WITH_WORLD = (StepStarted, Finished, Holding, Intervened, IssueDetected)
 """Reports from which the world can be rebuilt; a look is one, too, that saw what it waited for."""
 
-_LET_HOLD_GO_ON = (Intervene, TakePicture)
+_LET_HOLD_GO_ON = (Intervene, TakePicture, Avoid)
 
 _EPSILON_S = 1e-9
 

@@ -34,6 +34,11 @@ from mend.maps.building.building import Building
 
 REOPENS_EVERY_S = 300.0
 """What is closed for a while counts as open at multiples of this: plans know few such times."""
+_FOUND = {
+    Finding.BLOCKED: "the way blocked",
+    Finding.DOOR_CLOSED: "a closed door",
+    Finding.ELEVATOR_DEAD: "a dead elevator",
+}
 CLOSED_ITEMS = 64
 """So many items with which nothing remains to be done are forgotten at once."""
 
@@ -195,7 +200,8 @@ class Dispatcher:
         self._state.settle()
 
     def found(self, found: Found, now_s: float) -> None:
-        """A robot has found a way blocked, or a door closed, which counts for a while; or open.
+        """A robot has found a way blocked, a door closed, or an elevator dead, which counts for a
+        while; or open.
 
         Raises `ConflictError` where the places are no neighbours, or more changes than plans can
         know; `NotFoundError`.
@@ -209,7 +215,7 @@ class Dispatcher:
             until_s = self.now_s + self._state.policy.forget_s
             until_s = until_s if found.until_s is None else found.until_s
             until_s = REOPENS_EVERY_S * ceil(max(until_s, self.now_s + 1.0) / REOPENS_EVERY_S)
-            what = "a closed door" if found.finding is Finding.DOOR_CLOSED else "the way blocked"
+            what = _FOUND[found.finding]
             why = f"{by} found {what} between {a} and {b}, which counts until {until_s:g} s"
             self._state.apply(DoorClosed((a, b), until_s - self.now_s), why, ())
         self._state.settle()

@@ -1,6 +1,7 @@
 """A base that drives: sending it on its way, a control cycle at a time."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,13 +10,15 @@ from mend.maps.building.cabin import CABIN_M
 from mend.robots.base.basket import Basket, LoadSense, NoBasket
 from mend.robots.base.battery import Battery, MainsPower
 from mend.robots.base.body import BaseBody, BasePose
+from mend.robots.base.closed_ways import Closed, ClosedWays
 from mend.robots.base.driven_way import DrivenWay
 from mend.robots.base.elevators import Elevators, NoElevators
 from mend.robots.base.jumps import Jumps
 from mend.robots.base.motion.surroundings import Seen, Surroundings, hidden_behind
 from mend.robots.base.motion.warming_up import warm_up
 from mend.robots.base.motion.way_follower import WayFollower
-from mend.robots.base.ways import Ways
+from mend.robots.base.way_ahead import WayAhead
+from mend.robots.base.ways import Ride, Ways
 from mend.robots.base.whereabouts import AlwaysKnown, Whereabouts
 from mend.robots.execution.effector import Effector
 from mend.robots.link.messages import Driven
@@ -60,6 +63,7 @@ class Base(Effector[BaseBody]):
         self.battery: Battery = battery or MainsPower()
         self.load = LoadSense(self.basket)
         self.whereabouts: Whereabouts = whereabouts or AlwaysKnown()
+        self.closed = ClosedWays()
         self.at_rest = True
         self._speed = 1.0
         self._surroundings = Surroundings()
@@ -67,11 +71,12 @@ class Base(Effector[BaseBody]):
         self._way = DrivenWay()
         self._following: WayFollower | None = None
         self._barred: WayFollower | None = None
+        self._barrier: tuple[str, str] | None = None
 
     def start(self, to: BasePose, speed: float) -> None:
         """Begin to drive to a pose, at `speed` in (0, 1] of its best. Raises `CommandError`."""
         self._following, self._speed = self._follower(to), speed
-        self._barred = None
+        self._barred = self._barrier = None
         self.at_rest = False
 
     def jumps(self) -> bool:
@@ -144,23 +149,71 @@ class Base(Effector[BaseBody]):
             between=self.ways.lane_at(here, met),
         )
 
+    def bar(self, between: tuple[str, str]) -> None:
+        """Remember that what leaves it no way on is between these places, the one behind first."""
+        self._barrier = between
+        for lane in self.ways.together(between):
+            self.closed.bar(lane, between[0], self.body.time_s())
+
+    def rode(self, between: tuple[str, str]) -> bool:
+        """It has ridden an elevator; whether that counted as closed."""
+        lanes = self.ways.together(between)
+        closed = not self.closed.doubtful(self.body.time_s()).keys().isdisjoint(lanes)
+        for lane in lanes:
+            self.closed.passed(lane)
+        return closed
+
+    def rides_round(self, ride: Ride, to: BasePose) -> Sequence[Ride]:
+        """The rides to a pose that take no elevator that is closed, nor this one; none if none do.
+
+        Raises `CommandError`.
+        """
+        shut = {**self._closed_now, **dict.fromkeys(self.ways.together(ride.between))}
+        rides = self.ways.rides(self.body.pose(), to, shut)
+        return () if any(frozenset(each.between) in shut for each in rides) else rides
+
+    def is_closed(self, ride: Ride) -> bool:
+        """Whether its elevator counts as closed."""
+        return frozenset(ride.between) in self._closed_now
+
+    def round_takes_s(self, to: BasePose) -> float:
+        """How much longer than the way that is barred another one takes; infinite without one.
+
+        Raises `CommandError`.
+        """
+        here = self.body.pose()
+        barred = self._following or self._barred
+        if barred is None or not self.ways.leads_round(here, to, self._closed_now):
+            return math.inf
+        longer_m = self._follower(to).length_m - barred.ahead_m
+        return max(0.0, longer_m) / self.body.limits.speed_m_s
+
     def sees_out(self) -> bool:
         """Whether it sees farther than the walls of a cabin in which it would be."""
         out = self.body.scan().ranges_m > 2 * CABIN_M
         return float(out.mean()) > _SEES_OUT
 
-    def gets_to(self, to: BasePose) -> bool:
+    def way_to(self, to: BasePose, patience_s: float) -> WayAhead:
         """Whether what is seen leaves a way on to a pose. Raises `CommandError`.
 
         Where it stopped because it did not get on, it is the way there that counts: another one
-        might lead back first, where of course nothing is in the way.
+        might lead back first, where of course nothing is in the way. One that leads round and
+        takes longer by `patience_s` at most is taken.
         """
         here = self.body.pose()
         points = self._look_around(here).points
         barred = self._barred
-        if barred is not None and barred.goal == to and not barred.gets_on(here, points):
-            return False
-        return self._follower(to).gets_on(here, points)
+        if barred is None or barred.goal != to:
+            return WayAhead.FREE if self._follower(to).gets_on(here, points) else WayAhead.BARRED
+        if barred.gets_on(here, points):
+            if self._barrier is not None:
+                self.closed.free(frozenset(self._barrier))
+            gets_on = self._follower(to).gets_on(here, points)
+            return WayAhead.FREE if gets_on else WayAhead.BARRED
+        if self._barrier is None or self.round_takes_s(to) > patience_s:
+            return WayAhead.BARRED
+        gets_on = self._follower(to).gets_on(here, points)
+        return WayAhead.ROUND if gets_on else WayAhead.BARRED
 
     # --- Within -------------------------------------------------------------------------------
 
@@ -169,8 +222,12 @@ class Base(Effector[BaseBody]):
 
     def _follower(self, to: BasePose) -> WayFollower:
         body, here = self.body, self.body.pose()
-        way = [(here.x, here.y), *self.ways.path(here, to)]
+        way = [(here.x, here.y), *self.ways.path(here, to, self._closed_now)]
         return WayFollower(body.limits, body.radius_m, body.control_period_s, way, to)
+
+    @property
+    def _closed_now(self) -> Closed:
+        return self.closed.at(self.body.time_s())
 
     def _look_around(self, here: BasePose) -> Seen:
         """What is seen and remembered, and walls that it hides, in the frame of `here`.

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from mend.robots.base.base import Base
 from mend.robots.base.behaviors.execution import BaseExecution
+from mend.robots.base.way_ahead import WayAhead
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.routine import Routine
@@ -13,12 +14,24 @@ _PERIOD_S = 0.5
 
 
 def answer(
-    base: Base, command: str, fulfilled: bool | None, felt: FeltLoad | None = None
+    base: Base,
+    command: str,
+    fulfilled: bool | None,
+    felt: FeltLoad | None = None,
+    *,
+    led_round: bool = False,
 ) -> Looked:
     """Where the base is; it sees no objects, and judges no results."""
     here = base.body.pose()
     at = Position(x=here.x, y=here.y, z=here.z)
-    return Looked(command=command, objects={}, gripper=at, fulfilled=fulfilled, felt=felt)
+    return Looked(
+        command=command,
+        objects={},
+        gripper=at,
+        fulfilled=fulfilled,
+        felt=felt,
+        led_round=led_round,
+    )
 
 
 def look_as_told(
@@ -34,19 +47,20 @@ def look_as_told(
     if look.expect not in (None, "way_clear"):
         raise CommandError(f"a base that drives cannot look for '{look.expect}'")
 
-    def way_is_clear() -> bool:
-        return not isinstance(held, BaseExecution) or held.way_is_clear()
+    return _look_ahead(base, command, look, held)
 
-    def routine() -> Routine[Looked]:
-        end_s = base.body.time_s() + look.within_s
-        while look.expect is not None and not way_is_clear():
-            left_s = end_s - base.body.time_s()
-            if left_s <= 1e-9:
-                return answer(base, command, fulfilled=False)
-            yield from base.wait(min(_PERIOD_S, left_s))
+
+def _look_ahead(base: Base, command: str, look: Look, held: AnyExecution | None) -> Routine[Looked]:
+    """Where it is, or whether it gets on, and whether that is because another way leads round."""
+    if look.expect is None or not isinstance(held, BaseExecution):
         return answer(base, command, None if look.expect is None else True)
-
-    return routine()
+    end_s = base.body.time_s() + look.within_s
+    while (ahead := held.way_ahead()) is WayAhead.BARRED:
+        left_s = end_s - base.body.time_s()
+        if left_s <= 1e-9:
+            return answer(base, command, fulfilled=False)
+        yield from base.wait(min(_PERIOD_S, left_s))
+    return answer(base, command, fulfilled=True, led_round=ahead is WayAhead.ROUND)
 
 
 def _feel(base: Base, command: str, within_s: float, held: AnyExecution | None) -> Routine[Looked]:

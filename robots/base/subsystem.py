@@ -28,6 +28,7 @@ from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.monitor import AnyMonitor, for_view
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
+    Avoid,
     Driven,
     Location,
     Look,
@@ -75,6 +76,16 @@ class BaseSubsystem:
     def driven(self) -> Driven:
         return self.effector.driven()
 
+    @property
+    def avoids_ways(self) -> bool:
+        """Whether it knows ways by names, so that it keeps off those that it is told of."""
+        return self.effector.ways.has_places
+
+    def avoid(self, told: Avoid) -> None:
+        """Keep off ways where others lead."""
+        ways = {frozenset(each.between): each.until for each in told.ways}
+        self.effector.closed.tell(ways)
+
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> BaseExecution:
         """What a start command asks for, not begun. Raises `CommandError`."""
         behavior = self._behaviors[start.behavior]()
@@ -85,6 +96,7 @@ class BaseSubsystem:
             target=self._target(getattr(parameters, "place", None), start.target),
             ways=self.effector.ways,
             basket=self.effector.basket,
+            closed=self.effector.closed.at(self.effector.body.time_s()),
         )
         steps = behavior.steps(parameters, situation)
         if not self.effector.whereabouts.is_lost:

@@ -8,6 +8,7 @@ from mend.robots.execution.effector import Effector
 from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
+    Avoid,
     Driven,
     Look,
     Looked,
@@ -49,6 +50,15 @@ class Subsystem(Protocol):
     @property
     def driven(self) -> Driven | None:
         """What it has driven so far, by its wheels; None if it has none."""
+        ...
+
+    @property
+    def avoids_ways(self) -> bool:
+        """Whether it keeps off ways that it is told of."""
+        ...
+
+    def avoid(self, told: Avoid) -> None:
+        """Keep off ways where others lead."""
         ...
 
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> AnyExecution:

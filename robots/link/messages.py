@@ -314,6 +314,8 @@ class Looked(Message):
     that is between the fingers. `blind`: why the head camera showed nothing of the table, or of
     where the object that was just put down is to be, so that the look tells nothing of what is on
     the table; None if it did. `felt`: what a basket felt where that was not what was expected.
+    `led_round`: `way_clear` is fulfilled because another way leads round, not because what was in
+    the way is gone.
     """
 
     type: Literal["looked"] = "looked"
@@ -326,6 +328,19 @@ class Looked(Message):
     held: Word | None = None
     blind: Sentence | None = None
     felt: FeltLoad | None = None
+    led_round: bool = False
+
+
+class WayFound(Message):
+    """What a robot has found of a way that it drives, without asking anybody.
+
+    `between`: neighbouring places of its map, the one it came from first. It goes round where that
+    is `blocked`, a `door_closed` or an `elevator_dead`; it is `open` once the robot has passed it.
+    """
+
+    type: Literal["way_found"] = "way_found"
+    finding: Word
+    between: Annotated[list[Word], Field(min_length=2, max_length=2)]
 
 
 class Held(Message):
@@ -365,6 +380,7 @@ ReportBody = Annotated[
     | Resumed
     | Finished
     | Looked
+    | WayFound
     | Held
     | Intervened
     | Rejected,
@@ -476,6 +492,23 @@ class SlowDown(Message):
     factor: Annotated[float, Field(gt=0, le=1)]
 
 
+class ClosedWay(Message):
+    """Nobody gets through `between` these neighbouring places `until` then, as far as is known."""
+
+    between: Annotated[list[Word], Field(min_length=2, max_length=2)]
+    until: Time
+
+
+class Avoid(Message):
+    """Keep off these ways where others lead; all that were told before are open again.
+
+    It changes nothing else that the robot does, at whatever time it comes.
+    """
+
+    type: Literal["avoid"] = "avoid"
+    ways: Annotated[list[ClosedWay], Field(max_length=MOST)] = []
+
+
 class Hold(Message):
     """Simulated worlds: let the clock run, the arm holding still, until `until` or a command.
 
@@ -513,7 +546,16 @@ class Shutdown(Message):
 
 
 CommandBody = Annotated[
-    Start | Interrupt | Resume | Look | SlowDown | Hold | Intervene | TakePicture | Shutdown,
+    Start
+    | Interrupt
+    | Resume
+    | Look
+    | SlowDown
+    | Avoid
+    | Hold
+    | Intervene
+    | TakePicture
+    | Shutdown,
     Field(discriminator="type"),
 ]
 
@@ -529,6 +571,7 @@ class Hello(Message):
     `shows`: what its `poses` hold; None if it sends none. `room`: without it no other robot of its
     run works while its arm does not rest. `keeps_clear`: it moves about and keeps clear of others
     by what it senses itself, so that no space is kept for it. `driven`: None without a base.
+    `avoids_ways`: it takes `avoid`.
     """
 
     type: Literal["hello"] = "hello"
@@ -546,6 +589,7 @@ class Hello(Message):
     room: RoomLimits | None = None
     keeps_clear: bool = False
     driven: Driven | None = None
+    avoids_ways: bool = False
 
 
 class Report(Message):

@@ -9,6 +9,7 @@ from functools import partial
 from typing import Literal, TypeVar
 from uuid import UUID, uuid4
 
+from mend.documents.problem import list_names
 from mend.errors import ConflictError, NotFoundError, RefusalError
 from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
@@ -24,7 +25,7 @@ from mend.server.fleets.making_way import who_makes_way
 from mend.server.fleets.operator_requests import WayFound
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
-from mend.server.fleets.robot_findings import finding_of, is_led_round, issues_raised
+from mend.server.fleets.robot_findings import finding_of, findings, is_led_round
 from mend.server.fleets.runs import Runs
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Document, Entry, Journal
@@ -76,8 +77,6 @@ class FleetAtWork:
         self._behaviors = load_plugins("mend.behaviors")
         self._main: asyncio.Task[None] | None = None
         self._hears: asyncio.Task[None] | None = None
-        self._barred: dict[str, Found] = {}
-        """What robots have found on the way to the place of the leg that they are on."""
         self._set_out: dict[str, Odometer | None] = {}
         """What robots had driven when they set out for the leg that they are on."""
         self._kept: FleetRecord | None = None
@@ -117,6 +116,7 @@ class FleetAtWork:
             unwanted = await asyncio.to_thread(self._decide, self.now_s)
             await self._keep()
             under_way = self.dispatcher.legs_under_way()
+            self._site.keep_off(self.dispatcher.closed_until_s())
             for execution, _ in self._legs.values():
                 execution.look_again()
             self._alarms.ring()
@@ -199,37 +199,30 @@ class FleetAtWork:
     async def _hear(self) -> None:
         """Have plans follow what robots find on their ways."""
         hearing = Endless(f"what robots find at site {self._site.id}")
-        async for raised in issues_raised(self._journal):
-            if raised.robot in self._legs and raised.run == self._site.run_of(raised.robot):
+        async for event in findings(self._journal):
+            found = finding_of(event)
+            if found is not None and event.robot in self.dispatcher.fleet.robots:
                 with hearing.one_pass():
-                    await self._robot_found(raised)
+                    await self._robot_found(found)
 
-    async def _robot_found(self, raised: ev.IssueRaised) -> None:
+    async def _robot_found(self, found: Found) -> None:
         async with self._told():
-            legs = self.dispatcher.legs_under_way()
-            leg = next((each for each in legs if each.robot == raised.robot), None)
-            found = None if leg is None else finding_of(raised, leg)
-            if leg is None or found is None:
-                return
-            closed, graph = self.dispatcher.closed_until_s(), self.dispatcher.building.graph
-            if not is_led_round(graph, closed, found, leg.place):
+            if not self._is_news(found):
                 return
             try:
                 await asyncio.to_thread(self.dispatcher.found, found, self.now_s)
-                self._barred[raised.robot] = found
                 self._note_found(found)
             except RefusalError as error:
-                log.info("what %s found of its way changes no plan: %s", raised.robot, error)
+                log.info("what %s found of its way changes no plan: %s", found.by, error)
 
-    def _got_through(self, leg: Leg) -> None:
-        """A robot has come to its place all the same: what barred its way has gone."""
-        found = self._barred.pop(leg.robot, None)
-        if found is None or self._at(leg.robot) != leg.place:
-            return
-        if frozenset(found.between) in self.dispatcher.closed_until_s():
-            opened = Found(finding=Finding.OPEN, between=found.between, by=leg.robot)
-            self.dispatcher.found(opened, self.now_s)
-            self._note_found(opened)
+    def _is_news(self, found: Found) -> bool:
+        """Whether what a robot has found is something for others to go by."""
+        closed, graph = self.dispatcher.closed_until_s(), self.dispatcher.building.graph
+        if found.finding is Finding.OPEN:
+            return frozenset(found.between) in closed
+        legs = self.dispatcher.legs_under_way()
+        leg = next((each for each in legs if each.robot == found.by), None)
+        return is_led_round(graph, closed, found, found.between[1] if leg is None else leg.place)
 
     def _note_found(self, found: Found) -> None:
         """It is told even where it changes nobody's plan."""
@@ -261,9 +254,6 @@ class FleetAtWork:
         done = end.outcome is LegOutcome.DONE
         gone = None if self._site.is_connected(robot) else end.reason or "it is gone"
         why = self.out_of_service.get(robot, None if done else gone)
-        if done:
-            self._got_through(leg)
-        self._barred.pop(robot, None)
         if done or why is None:
             try:
                 self.dispatcher.ended(leg, end, now_s)
@@ -331,12 +321,22 @@ class FleetAtWork:
 
     async def found(self, way: WayFound, author: ev.Author | None) -> None:
         """A way was found blocked, or open. Raises as `Dispatcher.found`."""
-        a, b = way.between
+        a, b = way.between or self._stops_of(way.elevator or "")
+        what = f"the way between {a} and {b}" if way.elevator is None else way.elevator
         found = Found(finding=Finding(way.finding), between=(a, b), until_s=way.until_s)
         async with self._told():
             self.dispatcher.found(found, self.now_s)
             finding = way.finding.replace("_", " ")
-            self._note(f"said of the way between {a} and {b}: {finding}", author)
+            self._note(f"said of {what}: {finding}", author)
+
+    def _stops_of(self, elevator: str) -> list[str]:
+        """Two places where it stops. Raises `NotFoundError`."""
+        elevators = self.dispatcher.building.document.elevators
+        if elevator not in elevators:
+            raise NotFoundError(
+                f"there is no elevator '{elevator}'; there are {list_names(list(elevators))}"
+            )
+        return [f"{floor}/{at}" for floor, at in elevators[elevator].stops.items()][:2]
 
     async def take_out(self, robot: str, reason: str, author: ev.Author | None) -> None:
         """A robot is to do nothing more for now; others fetch what it has.

@@ -539,6 +539,17 @@ class RobotResumed(RobotEvent):
     step: int
 
 
+class WayFound(RobotEvent):
+    """The robot has found a way to be barred, and goes round, or open, as it has passed it.
+
+    `between`: neighbouring places, the one that it came from first.
+    """
+
+    type: Literal["way_found"] = "way_found"
+    finding: str
+    between: list[str]
+
+
 NO_RUN = UUID(int=0)
 """The `run` of what belongs to none."""
 
@@ -803,6 +814,7 @@ AnyEvent = Annotated[
     | RobotBack
     | RobotHolding
     | RobotResumed
+    | WayFound
     | DocumentKept
     | DocumentDeleted
     | SignedIn

@@ -278,6 +278,8 @@ class DialogueLooks:
     def _seen(
         self, dialogue: DialogueState, proxy: RobotProxy, expected: Expectation | None
     ) -> LookOutcome:
+        if proxy.led_round and expected is Expectation.WAY_CLEAR:
+            expected = Expectation.LED_ROUND
         fulfilled = set() if expected is None else {expected}
         if self._is_at_place(dialogue, proxy):
             fulfilled.add(Expectation.AT_PLACE)

@@ -14,6 +14,7 @@ from mend.robots.link.messages import (
     ReportBody,
     Resumed,
     StepStarted,
+    WayFound,
 )
 from mend.server.journal import events as ev
 from mend.server.plain_text import plain
@@ -51,6 +52,15 @@ class ReportEvents:
             case Resumed():
                 events = [
                     ev.RobotResumed(**self._context.stamp(), robot=proxy.robot, step=body.step)
+                ]
+            case WayFound():
+                events = [
+                    ev.WayFound(
+                        **self._context.stamp(),
+                        robot=proxy.robot,
+                        finding=body.finding,
+                        between=body.between,
+                    )
                 ]
             case Intervened():
                 events = [self._intervened(body)]

@@ -121,6 +121,8 @@ class RobotProxy:
     """Why the last look saw nothing of the table."""
     felt: FeltLoad | None = None
     """What its basket felt at the last look, where that was not what was looked for."""
+    led_round: bool = False
+    """Whether the last look saw that another way leads round what is in the way."""
 
     @property
     def room(self) -> RoomLimits | None:
@@ -279,6 +281,7 @@ class RobotProxy:
             self.seen_at = time
             self.last_seen |= {name: (time, each) for name, each in self.seen.items()}
         self.held, self.felt = looked.held, looked.felt
+        self.led_round = looked.led_round
         self.there = frozenset(looked.there)
         self.gripper = (
             *self.frame.to_scene(looked.gripper.x, looked.gripper.y),

@@ -4,10 +4,10 @@ import asyncio
 import logging
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
-from uuid import UUID
+from uuid import UUID, uuid4
 
 from mend.errors import ConflictError
-from mend.robots.link.messages import Held, Hello, Holding, Poses, Report
+from mend.robots.link.messages import Avoid, ClosedWay, Held, Hello, Holding, Poses, Report
 from mend.server.journal.journal import Entry, Journal, Receipt
 from mend.server.robots.registry import RobotRegistry
 from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
@@ -60,6 +60,7 @@ class Site:
         self.changed: Callable[[], None] = lambda: None
         """Told when a robot has come, when a run has given robots back, and when time has passed
         for which somebody had waited."""
+        self._closed: Mapping[frozenset[str], float] = {}
         self._restarts = 0
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -108,6 +109,31 @@ class Site:
                 proxy.hold(until_s, rate)
                 return True
         return False
+
+    def keep_off(self, closed: Mapping[frozenset[str], float]) -> None:
+        """Have its robots keep off ways between neighbouring places, each until a time (s).
+
+        Robots that do not know of such things go on as they do.
+        """
+        if closed == self._closed:
+            return
+        self._closed = dict(closed)
+        for robot in self._frames:
+            if self.is_connected(robot):
+                self._tell_ways(robot)
+
+    def _told_on_coming(self, robot: str) -> None:
+        if self._closed:
+            self._tell_ways(robot)
+
+    def _tell_ways(self, robot: str) -> None:
+        hello = self._registry.hello(robot)
+        if hello is not None and hello.avoids_ways:
+            ways = [
+                ClosedWay(between=sorted(way), until=until_s)
+                for way, until_s in self._closed.items()
+            ]
+            self._registry.send(robot, str(uuid4()), Avoid(ways=ways), renews=False)
 
     # --- Its world ----------------------------------------------------------------------------
 
@@ -159,6 +185,7 @@ class Site:
 
     async def robot_connected(self, robot: str, hello: Hello) -> None:
         """A robot is there, with nobody who has work for it."""
+        self._told_on_coming(robot)
         proxy = self._resting.get(robot)
         if proxy is None:
             return
@@ -209,6 +236,7 @@ class Site:
 
     def came(self, proxy: RobotProxy) -> None:
         """A robot of a run has connected: it goes to rest first if it had not yet."""
+        self._told_on_coming(proxy.robot)
         self.world.came(proxy.robot)
         before = self._handed_over.pop(proxy.robot, None)
         if before is not None and before.doing is RobotActivity.RETREATING:

@@ -25,6 +25,9 @@ class BuildingOptions(StrictModel):
 
     wrong_floors: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
     """How often somebody who presses a robot's button in an elevator presses another one."""
+    blocked_hallways: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
+    """Of the lanes along hallways, so many are blocked at first by people who stand there until a
+    robot before them asks them to make way, drawn by the seed."""
     localizer: Annotated[LocalizerKind, Field(strict=False)] = LocalizerKind.ENML
     """How robots know where they are: by laser and wheels, or exactly."""
     unmapped: Annotated[float, Field(ge=0.0, le=0.5, strict=False)] = 0.2

@@ -27,6 +27,7 @@ from mend.sim.building.draws import read_draws, written_draws
 from mend.sim.building.elevator_bank import CabinSnapshot, ElevatorBank
 from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.furniture import Furniture, Row
+from mend.sim.building.gatherings import gatherings
 from mend.sim.building.goods import Goods, ItemSnapshot, WishSnapshot
 from mend.sim.building.laser_noise import measured_m
 from mend.sim.building.odometry import Odometer, OdometerSnapshot
@@ -51,6 +52,8 @@ _BEFORE_PERSON_M = 1.5
 """Who is at a place reaches the basket of a robot that stands so near to it."""
 _AT_HAND_M = 10.0
 """People go so far for what is in the basket of a robot that does not get on."""
+_ASKED_M = 2.5
+"""Who stands so near to a robot that stands is meant by what it asks."""
 _HELD_OPEN_S = 30.0
 """What people opened for a robot falls shut after so long, once nobody is there."""
 
@@ -108,6 +111,10 @@ class BuildingWorld:
         self.touches = self.carried = 0
         self._time_s = 0.0
         self.bystanders: list[Bystander] = []
+        starts = list(starts)
+        stand = [at for _, at in starts]
+        if options.blocked_hallways:
+            self.bystanders = gatherings(building, options.blocked_hallways, goods.seed, stand)
         self.doors = WorldDoors(
             building,
             lambda door: (
@@ -346,12 +353,23 @@ class BuildingWorld:
         return ""
 
     def _make_way(self) -> str:
-        stepped_aside = bool(self.bystanders)
-        self.bystanders.clear()
+        asked = [each for each in self.bystanders if self._is_asked(each)]
+        stepped_aside = asked or self.bystanders
+        self.bystanders = [each for each in self.bystanders if each not in stepped_aside]
         opened = self._open_for_who_waits()
         pressed = self._press_for_who_waits()
-        done = stepped_aside or opened or pressed
+        done = bool(stepped_aside) or opened or pressed
         return "" if done else "nothing is in the way of any robot"
+
+    def _is_asked(self, bystander: Bystander) -> bool:
+        """Whether a robot stands before them; where none does, everybody is meant."""
+        at = bystander.at
+        return any(
+            robot.at.floor == at.floor
+            and not robot.moving
+            and math.hypot(robot.at.x - at.x, robot.at.y - at.y) < _ASKED_M
+            for robot in self.robots
+        )
 
     def _press_for_who_waits(self) -> bool:
         """Somebody calls the elevator that a robot needs, and presses a button in it."""

@@ -39,6 +39,7 @@ class BuildingBench:
         forgetful: float = 0.0,
         battery_wh: float = 0.0,
         people: int = 0,
+        blocked_hallways: float = 0.0,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
         setup = WorldSetup(
@@ -55,6 +56,7 @@ class BuildingBench:
                 "forgetful": forgetful,
                 "battery_wh": battery_wh,
                 "people": people,
+                "blocked_hallways": blocked_hallways,
             },
         )
         self.group: SharedWorld = BUILDINGS.create_agents(setup)

@@ -33,6 +33,7 @@ PARTS: dict[str, type[BaseModel]] = {
     "shown_pose": m.ShownPose,
     "position": m.Position,
     "location": m.Location,
+    "closed_way": m.ClosedWay,
     "intervention": Intervention,
 }
 MODELS = PARTS | {

@@ -47,11 +47,19 @@ ADDED_SINCE: dict[str, set[str]] = {
         "node_taken",
         "node_undone",
         "suspected_false_alarm",
+        "way_found",
     },
-    "v2": {*OF_NO_RUN, "node_taken", "first_look", "looked_anew", "suspected_false_alarm"},
-    "v3": {*OF_NO_RUN, "node_taken", "looked_anew"},
-    "v4": {*OF_NO_RUN, "node_taken", "looked_anew"},
-    "v5": {*OF_NO_RUN, "node_taken", "looked_anew"},
+    "v2": {
+        *OF_NO_RUN,
+        "node_taken",
+        "first_look",
+        "looked_anew",
+        "suspected_false_alarm",
+        "way_found",
+    },
+    "v3": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
+    "v4": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
+    "v5": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
 }
 """The types of events that came after a sample was written."""
 

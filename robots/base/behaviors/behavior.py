@@ -8,6 +8,7 @@ from typing import TypeAlias
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.basket import Basket, NoBasket
 from mend.robots.base.body import BasePose
+from mend.robots.base.closed_ways import Closed
 from mend.robots.base.ways import Ride, Ways
 from mend.robots.execution.behavior import Behavior
 from mend.robots.execution.command_error import CommandError
@@ -108,6 +109,7 @@ class BaseSituation:
 
     `here` is where the base is; `places` are the poses of all that the task's scene names so, and
     `target` is that of the behavior's `place`, None where it has none. `basket`: its own.
+    `closed`: the ways that it keeps off.
     """
 
     here: BasePose
@@ -115,6 +117,7 @@ class BaseSituation:
     target: BasePose | None
     ways: Ways
     basket: Basket = field(default_factory=NoBasket)
+    closed: Closed = field(default_factory=dict)
 
 
 class BaseBehavior(Behavior):
@@ -145,6 +148,6 @@ def steps_to(place: str, situation: BaseSituation, near_m: float = 0.0) -> list[
     """
     if situation.target is None:
         raise CommandError(f"it is not known where '{place}' is")
-    rides = situation.ways.rides(situation.here, situation.target)
+    rides = situation.ways.rides(situation.here, situation.target, situation.closed)
     steps = [step for ride in rides for step in steps_of_ride(ride)]
     return [*steps, Drive(f"go to {place}", situation.target, near_m=near_m)]

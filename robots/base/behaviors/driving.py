@@ -5,12 +5,14 @@ from collections.abc import Callable
 from mend.maps.building.building import ON_FLOOR_M
 from mend.robots.base.base import Base
 from mend.robots.base.behaviors.behavior import Drive
+from mend.robots.base.behaviors.passing import Passing
 from mend.robots.base.behaviors.progress import BaseProgress
 from mend.robots.base.behaviors.watch import BaseWatch
 from mend.robots.base.body import BasePose
 from mend.robots.base.motion.headway import Headway
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.routine import Routine
+from mend.robots.link.messages import ReportBody, WayFound
 
 NEAR_M = 0.05
 TURNED_RAD = 0.09
@@ -23,8 +25,15 @@ KEPT_OFF_S = 2.0
 class Driving:
     """Takes drives, and lets the monitors watch."""
 
-    def __init__(self, base: Base, progress: BaseProgress, watch: BaseWatch) -> None:
+    def __init__(
+        self,
+        base: Base,
+        progress: BaseProgress,
+        watch: BaseWatch,
+        report: Callable[[ReportBody], None],
+    ) -> None:
         self._base, self._progress, self._watch = base, progress, watch
+        self._passing, self._report = Passing(base), report
 
     def is_at(self, goal: BasePose) -> bool:
         """Whether the base is where it was to go."""
@@ -42,13 +51,15 @@ class Driving:
         """Drive there, or until there is `no_more` reason to. Raises `Interruption`."""
         self._begin(drive)
         self._watch.check()
-        headway = Headway(self._base.body.limits.turn_rad_s)
+        headway, rounds = self._headway(), self._watch.going_round.times
         while not (self.is_at(drive.to) and self._base.slow) and not no_more():
             if self._is_kept_off(drive):
                 break
             if self._base.following is not None:
                 self._drive_on(drive, headway)
             self._watch.check_if_due()
+            if self._watch.going_round.times > rounds:
+                headway, rounds = self._headway(), self._watch.going_round.times
             yield
         self._base.stop()
         yield from self._watched(self._base.settle())
@@ -62,6 +73,9 @@ class Driving:
         barrier = self._base.barrier()
         stood_s = self._base.body.time_s() - since_s
         return barrier is not None and barrier.door is None and stood_s >= KEPT_OFF_S
+
+    def _headway(self) -> Headway:
+        return Headway(self._base.body.limits.turn_rad_s)
 
     def _begin(self, drive: Drive) -> None:
         progress = self._progress
@@ -81,6 +95,8 @@ class Driving:
         base.drive_on()
         if base.whereabouts.is_lost:
             return
+        for origin, beyond in self._passing.passed():
+            self._report(WayFound(finding="open", between=[origin, beyond]))
         following = base.following
         assert following is not None, "it drives"
         if not following.barred:

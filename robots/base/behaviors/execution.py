@@ -19,9 +19,11 @@ from mend.robots.base.behaviors.behavior import (
 )
 from mend.robots.base.behaviors.driving import NEAR_M, Driving
 from mend.robots.base.behaviors.handling import Handling
+from mend.robots.base.behaviors.other_elevator import OtherElevator
 from mend.robots.base.behaviors.progress import BaseProgress
 from mend.robots.base.behaviors.riding import Riding
 from mend.robots.base.behaviors.watch import BaseWatch
+from mend.robots.base.way_ahead import WayAhead
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import Execution
 from mend.robots.execution.execution_state import ExecutionState
@@ -48,27 +50,31 @@ class BaseExecution(Execution[BaseProgress]):
         super().__init__(id, progress, base, report)
         self._base = base
         self._watch = BaseWatch(id, behavior, progress, base, monitors, report)
-        self._driving = Driving(base, progress, self._watch)
-        self._riding = Riding(base, self._driving, progress, self._watch)
+        self._other = OtherElevator(base, progress, report)
+        self._driving = Driving(base, progress, self._watch, report)
+        self._riding = Riding(base, self._driving, progress, self._watch, self._other)
         self._handling = Handling(base, progress, self._watch)
         self._done = 0
         self._asked_whether_heard = False
 
-    def way_is_clear(self) -> bool:
+    def way_ahead(self) -> WayAhead:
         """Whether the step under way, or else the next, could be taken, as far as is seen."""
         left = self._progress.steps[self._done :]
         try:
             match left[0] if left else None:
                 case Drive() as drive:
-                    return self._base.gets_to(drive.to)
-                case GetIn() as step:
-                    is_open = self._base.elevators.is_open_for(step.ride)
-                    return is_open and self._base.gets_to(step.ride.inside)
-                case RideUntilThere() as step:
-                    return self._riding.is_over(step.ride)
+                    return self._base.way_to(drive.to, self._watch.going_round.patience_s())
+                case GetIn() as step if self._base.elevators.is_open_for(step.ride):
+                    return self._base.way_to(step.ride.inside, 0.0)
+                case RideUntilThere() as step if self._riding.is_over(step.ride):
+                    return WayAhead.FREE
+                case GetIn() as step if self._other.leads_there(step):
+                    return WayAhead.ROUND
+                case GetIn() | RideUntilThere():
+                    return WayAhead.BARRED
         except CommandError:
-            return False
-        return True
+            return WayAhead.BARRED
+        return WayAhead.FREE
 
     def felt(self) -> FeltLoad | None:
         """What the basket feels that is not what the step under way, or else the next, needs."""
@@ -96,6 +102,7 @@ class BaseExecution(Execution[BaseProgress]):
         return min(max(0.0, 1.0 - following.left_m / following.length_m), 1.0)
 
     def end(self) -> None:
+        self._other.give_up()
         self._base.elevators.withdraw()
         self._base.basket.withdraw()
         super().end()
@@ -113,13 +120,13 @@ class BaseExecution(Execution[BaseProgress]):
         if self._is_elsewhere():
             self._done -= 1
         progress.move_to(ExecutionState.RUNNING)
-        for number in range(self._done + 1, len(progress.steps) + 1):
-            progress.step = number
+        while self._done < len(progress.steps):
+            progress.step = self._done + 1
             if resumed:
-                self._report(Resumed(execution=self.id, step=number))
+                self._report(Resumed(execution=self.id, step=progress.step))
                 resumed = False
-            yield from self._take(progress.steps[number - 1])
-            self._done = number
+            if (yield from self._take(progress.steps[self._done])):
+                self._done += 1
         progress.move_to(ExecutionState.CONFIRMING)
         self._watch.check()
         yield from self._find_out()
@@ -164,8 +171,8 @@ class BaseExecution(Execution[BaseProgress]):
             for each in self._progress.steps
         )
 
-    def _take(self, step: BaseStep) -> Routine[None]:
-        """One step. Raises `Interruption`."""
+    def _take(self, step: BaseStep) -> Routine[bool]:
+        """One step; False if other steps are taken instead. Raises `Interruption`."""
         self._report(
             StepStarted(execution=self.id, step=self.step, name=step.name, phase=phase_of(step))
         )
@@ -173,7 +180,7 @@ class BaseExecution(Execution[BaseProgress]):
             case Drive():
                 yield from self._driving.take(step)
             case GetIn():
-                yield from self._riding.get_in(step)
+                return (yield from self._riding.get_in(step))
             case RideUntilThere():
                 yield from self._riding.ride(step)
             case AwaitItem():
@@ -184,6 +191,7 @@ class BaseExecution(Execution[BaseProgress]):
                 yield from self._handling.tell(step)
             case Charging():
                 yield from self._handling.charge(step)
+        return True
 
     def _react(self, interruption: Interruption) -> Routine[None]:
         self._asked_whether_heard = str(interruption) == UNHEARD
@@ -191,6 +199,7 @@ class BaseExecution(Execution[BaseProgress]):
 
     def _go_to_rest(self) -> Routine[None]:
         """A base rests where it stands, but in no cabin."""
+        self._other.give_up()
         self._base.elevators.withdraw()
         self._base.basket.withdraw()
         yield from self._base.settle()

@@ -1,7 +1,7 @@
 """How far a base's execution has come."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from mend.robots.base.behaviors.behavior import (
     BaseStep,
@@ -43,7 +43,7 @@ class BaseProgress(Progress):
     `blocked_since_s`: since when it has stood before something; None while it drives. `stalled_s`:
     how long it has come no nearer, although it may move. `no_way`: why it knows no way. `wait`: for
     what elevator it waits, and `standing` for what people. `heard`: somebody has said that the
-    message was heard.
+    message was heard. `awaits_s`: since when it has waited for elevators that have not come.
     """
 
     steps: Sequence[BaseStep] = ()
@@ -53,6 +53,7 @@ class BaseProgress(Progress):
     wait: Wait | None = None
     standing: StandingWait | None = None
     heard: bool = False
+    awaits_s: dict[str, float] = field(default_factory=dict)
 
     @property
     def taken(self) -> BaseStep | None:

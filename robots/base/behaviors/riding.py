@@ -6,6 +6,7 @@ from mend.maps.building.cabin import CABIN_M
 from mend.robots.base.base import Base
 from mend.robots.base.behaviors.behavior import Drive, GetIn, RideUntilThere
 from mend.robots.base.behaviors.driving import Driving
+from mend.robots.base.behaviors.other_elevator import OtherElevator
 from mend.robots.base.behaviors.progress import BaseProgress, Wait
 from mend.robots.base.behaviors.watch import BaseWatch
 from mend.robots.base.ways import Ride
@@ -18,26 +19,43 @@ class Riding:
     """Takes the steps of rides, and lets the monitors watch."""
 
     def __init__(
-        self, base: Base, driving: Driving, progress: BaseProgress, watch: BaseWatch
+        self,
+        base: Base,
+        driving: Driving,
+        progress: BaseProgress,
+        watch: BaseWatch,
+        other: OtherElevator,
     ) -> None:
         self._base, self._driving = base, driving
         self._progress, self._watch = progress, watch
+        self._other = other
 
-    def get_in(self, step: GetIn) -> Routine[None]:
+    def get_in(self, step: GetIn) -> Routine[bool]:
         """Wait until the cabin is open for this robot, and drive in. Raises `Interruption`.
 
-        If it shuts before the robot is in, the robot waits again.
+        If it shuts before the robot is in, the robot waits again. False if it does not come, and
+        another elevator is taken: what is left to do is another then.
         """
         ride, elevators = step.ride, self._base.elevators
+
+        def is_open_or_leads_elsewhere() -> bool:
+            return elevators.is_open_for(ride) or self._other.leads_there(step)
+
         while not self._is_in(ride):
-            yield from self._await(ride, aboard=False, until=lambda: elevators.is_open_for(ride))
+            self._other.awaits(ride)
+            yield from self._await(ride, aboard=False, until=is_open_or_leads_elsewhere)
+            if not elevators.is_open_for(ride) and self._other.take(step):
+                elevators.withdraw()
+                return False
             yield from self._driving.take(
                 Drive(step.name, ride.inside), lambda: not elevators.is_open_for(ride)
             )
+        return True
 
     def ride(self, step: RideUntilThere) -> Routine[None]:
         """Stay until the cabin is open at the floor where the ride ends. Raises `Interruption`."""
         yield from self._await(step.ride, aboard=True, until=lambda: self.is_over(step.ride))
+        self._other.took(step.ride)
 
     def get_out(self, *, rides: bool) -> Routine[None]:
         """Leave the cabin in which it is, if any: nobody else could ride.

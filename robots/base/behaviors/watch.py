@@ -5,11 +5,12 @@ from collections.abc import Callable, Sequence
 
 from mend.robots.base.base import Base
 from mend.robots.base.behaviors.behavior import AwaitItem, AwaitTaken, Charging, Drive, Tell
+from mend.robots.base.behaviors.going_round import GoingRound
 from mend.robots.base.behaviors.progress import BaseProgress
 from mend.robots.base.monitors.monitor import AwaitedElevator, BaseView, Power, StandingFor
 from mend.robots.execution.monitor import AnyMonitor
 from mend.robots.execution.watch import Watch
-from mend.robots.link.messages import ReportBody
+from mend.robots.link.messages import Detection, ReportBody
 
 
 class BaseWatch(Watch[BaseView, BaseProgress]):
@@ -27,6 +28,7 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
         """`behavior`: the name by which monitors know the one that is executed."""
         super().__init__(execution, behavior, progress, base, monitors, report)
         self._base = base
+        self.going_round = GoingRound(base, progress, report)
         self._next_check_s = -math.inf
 
     def check_if_due(self) -> None:
@@ -66,6 +68,9 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
                 power=self._power(),
             )
         )
+
+    def _copes_with(self, monitor: AnyMonitor, detection: Detection) -> bool:
+        return self.going_round.copes_with(monitor.issue, detection)
 
     def _standing(self, now_s: float) -> StandingFor | None:
         standing = self._progress.standing

@@ -76,6 +76,11 @@ class WayFollower:
         return self._leads_on(self._route(here, points, ahead_m, by_m), ahead_m, by_m)
 
     @property
+    def ahead_m(self) -> float:
+        """How far its way still leads, whatever is on it."""
+        return self.length_m - self._along_m
+
+    @property
     def turns_at_end(self) -> bool:
         """Whether it is where the way ends."""
         return self._at_end
@@ -145,6 +150,9 @@ class WayFollower:
             return Steering(None, 0.0)
         self.barred = False
         assert route.reached is not None, "it leads on"
+        if route.reached == len(ahead_m) - 1 and route.cost_m < _GETS_ON_M:
+            # It has cut a corner so sharp that what is left of the way lies farther on.
+            self._along_m = float(ahead_m[-1])
         self.left_m = route.cost_m + self.length_m - float(ahead_m[route.reached])
         towards = in_frame_of(np.array([route.carrot]), here)[0]
         if off_m > _FACES_GOAL_M:

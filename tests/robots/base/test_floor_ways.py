@@ -6,8 +6,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from mend.maps.building.building import Building, BuildingDocument, FloorPlace
+from mend.maps.building.building import Building, BuildingDocument, FloorPlace, PlaceKind
 from mend.maps.building.clearance import distances_m
 from mend.maps.building.crossing import crossed_by
 from mend.maps.building.random_building import random_building
@@ -168,3 +170,82 @@ def test_the_walls_around_a_pose_are_known_and_a_cabin_has_a_name() -> None:
 
 def pose_of(frame: Frame, place: FloorPlace, height_m: float) -> BasePose:
     return BasePose(*frame.to_robot(place.x, place.y), 0.0, height_m)
+
+
+def rings(seed: int) -> tuple[Building, FloorWays]:
+    building = Building(random_building(seed % 7, 1 + seed % 3, 20 + 10 * (seed % 2)))
+    return building, FloorWays(building, Frame(), 1.0, 0.3)
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 6), data=st.data())
+def test_what_is_closed_is_gone_by_only_where_no_other_way_leads(
+    seed: int, data: st.DataObject
+) -> None:
+    """Against a search of its own: whether a way is left once what is closed is taken out."""
+    building, ways = rings(seed)
+    floor = building.floors["F1"]
+    lanes = [frozenset(f"F1/{each}" for each in lane.between) for lane in floor.lanes]
+    shut = data.draw(st.sets(st.sampled_from(lanes), max_size=8))
+    names = [n for n, each in floor.places.items() if each.kind is not PlaceKind.ELEVATOR]
+    start, goal = (data.draw(st.sampled_from(names)) for _ in range(2))
+    here, to = (pose_of(Frame(), floor.places[each], floor.height) for each in (start, goal))
+    closed = dict.fromkeys(shut)
+    path = ways.path(here, to, closed)
+    assert math.dist(path[-1], (to.x, to.y)) < 1e-9
+    stops = {f"F1/{n}" for n, each in floor.places.items() if each.kind is PlaceKind.ELEVATOR}
+    open_ = [each for each in lanes if each not in shut and not each & stops]
+    left = reached_from(f"F1/{start}", open_)
+    assert ways.leads_round(here, to, closed) is (f"F1/{goal}" in left)
+    if f"F1/{goal}" in left:
+        way = [(here.x, here.y), *path]
+        for lane in shut:
+            a, b = (floor.places[each.removeprefix("F1/")] for each in sorted(lane))
+            middle = ((a.x + b.x) / 2, (a.y + b.y) / 2)
+            assert all(off_m(middle, *leg) > 1e-6 for leg in pairwise(way))
+
+
+def reached_from(start: str, lanes: list[frozenset[str]]) -> set[str]:
+    reached, new = set[str](), {start}
+    while new:
+        reached |= new
+        new = {end for lane in lanes if lane & new for end in lane} - reached
+    return reached
+
+
+def off_m(point: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
+    return float(distances_m(np.array([point]), np.array([[*a, *b]]))[0])
+
+
+def test_a_closed_elevator_is_left_where_another_one_rides_there() -> None:
+    building = Building(random_building(1, 3, 60))
+    ways = FloorWays(building, Frame(), 1.0, 0.3)
+    floors = building.floors
+    here = pose_of(Frame(), floors["F1"].places["101"], floors["F1"].height)
+    to = pose_of(Frame(), floors["F3"].places["301"], floors["F3"].height)
+    (ride,) = ways.rides(here, to)
+    stops = [f"{f}/{at}" for f, at in building.document.elevators[ride.elevator].stops.items()]
+    closed = {frozenset((a, b)): None for a in stops for b in stops if a != b}
+    (instead,) = ways.rides(here, to, closed)
+    assert instead.elevator != ride.elevator
+    everything = {
+        frozenset((way.a, way.b)): None for way in building.graph.ways if way.kind == "elevator"
+    }
+    assert ways.rides(here, to, everything) == [ride]
+
+
+def test_who_stands_before_what_is_barred_goes_back_from_there() -> None:
+    places: dict[str, object] = {"a": {"x": 0.0, "y": 0.0}, "b": {"x": 10.0, "y": 0.0}}
+    places |= {"c": {"x": 0.0, "y": 9.0}, "d": {"x": 10.0, "y": 9.0}}
+    lanes = [("a", "b"), ("a", "c"), ("c", "d"), ("d", "b")]
+    walls = ((1.0, 1.0, 9.0, 1.0), (-1.0, -1.0, 11.0, -1.0))
+    floor = {"places": places, "lanes": [{"between": each} for each in lanes], "walls": walls}
+    ways = FloorWays(Building(document_of("ring", floor)), Frame(), 1.0, 0.3)
+    here, to = BasePose(7.0, 0.0, 0.0), BasePose(10.0, 0.0, 0.0)
+    lane = frozenset(("F1/a", "F1/b"))
+    assert list(ways.path(here, to)) == [(10.0, 0.0)]
+    round_ = [(0.0, 0.0), (0.0, 9.0), (10.0, 9.0), (10.0, 0.0)]
+    assert list(ways.path(here, to, {lane: "F1/a"})) == round_
+    assert list(ways.path(here, to, {lane: "F1/b"})) == [(10.0, 0.0)]
+    there = BasePose(9.8, 0.0, 0.0)
+    assert list(ways.path(there, to, {lane: "F1/a"})) == [(10.0, 0.0)]

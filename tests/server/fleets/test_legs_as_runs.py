@@ -1,7 +1,7 @@
 """A fleet hands its legs out as runs, once each, and follows what becomes of them."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -53,9 +53,14 @@ class FakeSite:
         self.standing: dict[str, tuple[float, float, float]] = {}
         self.runs: dict[str, UUID] = {}
         self.odometers: dict[str, Odometer] = {}
+        self.kept_off: set[frozenset[str]] = set()
+        self.stands_still = False
 
     def odometer(self, robot: str) -> Odometer | None:
         return self.odometers.get(robot)
+
+    def keep_off(self, closed: Mapping[frozenset[str], float]) -> None:
+        self.kept_off = set(closed)
 
     def rests(self, robot: str) -> bool:
         return robot not in self.busy | self.gone
@@ -70,6 +75,8 @@ class FakeSite:
         return self.standing.get(robot)
 
     def let_time_pass(self, until_s: float, rate: float | None) -> bool:  # noqa: ARG002
+        if self.stands_still:
+            return True
         self.time.heard(until_s)
         asyncio.get_running_loop().call_soon(self.changed)
         return True
@@ -453,3 +460,9 @@ async def test_a_robot_with_nothing_to_do_makes_way_for_one_that_comes() -> None
 
 def _place_of_r0(dispatcher: Dispatcher) -> str:
     return dispatcher.building.graph.places[dispatcher.fleet.robots["r0"].place].name
+
+
+async def test_who_says_that_an_elevator_is_dead_names_one_that_there_is() -> None:
+    async with working("a") as work:
+        with pytest.raises(NotFoundError, match="there is no elevator 'lift9'"):
+            await work.fleet.found(WayFound(finding="elevator_dead", elevator="lift9"), None)
