@@ -208,7 +208,9 @@ class Transcript:
         | ev.PlanChanged
         | ev.FleetTold
         | ev.LegBegun
-        | ev.LegEnded,
+        | ev.LegEnded
+        | ev.ErrandBegun
+        | ev.ErrandEnded,
     ) -> list[Line]:
         return []  # It belongs to no run.
 

@@ -151,6 +151,8 @@ def _what(event: ev.Event) -> str | None:
             return f"closed the site {site}"
         case ev.FleetTold(told=told, finder=None):
             return told
+        case ev.ErrandBegun(author=ev.Author(), robot=robot, place=place):
+            return f"sent {robot} to {place}"
         case ev.RequestChanged(author=ev.Author(), request=request, status=status):
             return f"{_ASKED.get(status, 'asked for')} '{request}'"
         case ev.RunPaused():

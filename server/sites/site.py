@@ -9,6 +9,7 @@ from uuid import UUID
 from mend.errors import ConflictError
 from mend.robots.link.messages import Held, Hello, Holding, Poses, Report
 from mend.server.journal.journal import Entry, Journal, Receipt
+from mend.server.poses.bases import SeenBase, in_scene
 from mend.server.robots.registry import RobotRegistry
 from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
 from mend.server.runtime.team import Neighbour
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+BASES_HZ = 2.0
+"""How often robots whose site is watched say where they are, by their clock."""
 MAX_RESTARTS = 20
 """So often a world is started again by itself without a report of any robot since."""
 
@@ -85,6 +88,19 @@ class Site:
     def whereabouts(self, robot: str) -> Point | None:
         """Where a robot was when a run's look last said so, in the scene's frame."""
         return self._seen_at.get(robot)
+
+    def show_bases(self) -> None:
+        """Have its robots say where they are, also those that no run has."""
+        for robot in self._frames:
+            self._registry.always_show_poses(robot, BASES_HZ)
+
+    def base(self, robot: str) -> SeenBase | None:
+        """Where a robot says that it is, in the scene's frame; None until it has."""
+        poses = self._registry.poses(robot)
+        if poses is None:
+            return None
+        age_s = max(0.0, self.world.time.latest_s - poses.time)
+        return SeenBase(in_scene(self._frames[robot], poses.base), age_s)
 
     def let_time_pass(self, until_s: float, rate: float | None) -> bool:
         """Have the world's clock run until then, also where no run has a robot.

@@ -57,6 +57,9 @@ class FakeSite:
     def run_of(self, robot: str) -> UUID | None:
         return self.runs.get(robot)
 
+    def show_bases(self) -> None:
+        pass
+
     def is_connected(self, robot: str) -> bool:
         return robot not in self.gone
 
@@ -157,7 +160,7 @@ class Work:
 def _fleet(site: Any, runs: FakeRuns, journal: SqliteJournal, of: Dispatcher) -> FleetAtWork:
     places, options = PlaceNames(office(), SCENE), FleetOptions()
     now = datetime(2026, 1, 2, tzinfo=UTC)
-    return FleetAtWork(site, of, places, options, runs, journal, None, lambda: now, {})
+    return FleetAtWork(site, of, places, options, runs, journal, None, lambda: now)
 
 
 @asynccontextmanager

@@ -20,6 +20,8 @@ export interface Standing {
   readonly moving: boolean;
   /** How long ago it was seen there, s; null while that is now. */
   readonly seen_s: number | null;
+  /** How sure it is of x and y: variances and covariance xx, xy, yy, square metres; unset where nobody tells. */
+  readonly covariance?: readonly number[] | null;
 }
 
 /** How far what is shown is behind: `time` is the run's clock that is shown, `silent_s` counts since the last frame. */

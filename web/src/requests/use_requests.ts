@@ -3,7 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import * as rest from "../wire/rest";
 import type { FleetView, RequestView } from "../wire/types";
 
-const AGAIN_MS = 2000;
+const AGAIN_MS = 2_000;
 
 export interface Requests {
   /** Null until they were read. */
@@ -15,7 +15,7 @@ export interface Requests {
 const NOTHING: Requests = { requests: null, fleet: null, failure: "" };
 
 /** Also how to read them at once. */
-export function useRequests(site: string): Requests & { again: () => void } {
+export function useRequests(site: string, againMs = AGAIN_MS): Requests & { again: () => void } {
   const [found, setFound] = useState<Requests>(NOTHING);
   const [asked, setAsked] = useState(0);
   useEffect(() => {
@@ -26,11 +26,11 @@ export function useRequests(site: string): Requests & { again: () => void } {
         (error: Error) => current && setFound((before) => ({ ...before, failure: error.message })),
       );
     void read();
-    const timer = setInterval(() => void read(), AGAIN_MS);
+    const timer = setInterval(() => void read(), againMs);
     return () => {
       current = false;
       clearInterval(timer);
     };
-  }, [site, asked]);
+  }, [site, asked, againMs]);
   return { ...found, again: () => setAsked((count) => count + 1) };
 }
