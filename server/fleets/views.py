@@ -77,7 +77,7 @@ class PlannedStop(View):
 class RobotPose(View):
     """Where a robot says that it is, in the scene's frame; `age_s`: how long ago.
 
-    `covariance`: of x and y, as xx, xy, yy in square metres; None where it does not tell.
+    `covariance`: of its place, xx, xy, yy (m2); None where it does not tell.
     """
 
     x: float

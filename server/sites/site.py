@@ -100,7 +100,7 @@ class Site:
         if poses is None:
             return None
         age_s = max(0.0, self.world.time.latest_s - poses.time)
-        return SeenBase(in_scene(self._frames[robot], poses.base), age_s)
+        return SeenBase(in_scene(self._frames[robot], poses.base), age_s, poses.covariance)
 
     def let_time_pass(self, until_s: float, rate: float | None) -> bool:
         """Have the world's clock run until then, also where no run has a robot.

@@ -23,6 +23,7 @@ from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.journal import events as ev
 from mend.server.journal.sqlite import SqliteJournal
+from mend.server.poses.bases import SeenBase
 from mend.server.runtime.clock import WorldTime
 from mend.server.runtime.views import RunStatus
 from mend.server.sites.requests import FleetOptions
@@ -50,6 +51,7 @@ class FakeSite:
         self.gone: set[str] = set()
         self.standing: dict[str, tuple[float, float, float]] = {}
         self.runs: dict[str, UUID] = {}
+        self.bases: dict[str, SeenBase] = {}
 
     def rests(self, robot: str) -> bool:
         return robot not in self.busy | self.gone
@@ -58,7 +60,10 @@ class FakeSite:
         return self.runs.get(robot)
 
     def show_bases(self) -> None:
-        pass
+        """They are as a test sets them."""
+
+    def base(self, robot: str) -> SeenBase | None:
+        return self.bases.get(robot)
 
     def is_connected(self, robot: str) -> bool:
         return robot not in self.gone
@@ -157,10 +162,16 @@ class Work:
                 await asyncio.sleep(0)
 
 
-def _fleet(site: Any, runs: FakeRuns, journal: SqliteJournal, of: Dispatcher) -> FleetAtWork:
+def _fleet(
+    site: Any,
+    runs: FakeRuns,
+    journal: SqliteJournal,
+    of: Dispatcher,
+    kept: FleetRecord | None = None,
+) -> FleetAtWork:
     places, options = PlaceNames(office(), SCENE), FleetOptions()
     now = datetime(2026, 1, 2, tzinfo=UTC)
-    return FleetAtWork(site, of, places, options, runs, journal, None, lambda: now)
+    return FleetAtWork(site, of, places, options, runs, journal, None, lambda: now, kept)
 
 
 @asynccontextmanager

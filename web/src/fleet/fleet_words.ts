@@ -1,4 +1,5 @@
 // How the console speaks of a fleet: what robots do and are to do, and what is known of ways.
+import { likelyEllipse } from "../building/likely_ellipse";
 import { robotName } from "../question/fault_words";
 import { clock } from "../run/run_words";
 import type { ClosedWayView, FleetRobot } from "../wire/types";
@@ -44,6 +45,12 @@ export function closedInWords({ between, finding, by, until_s }: ClosedWayView):
   const what = finding === "door_closed" ? "Door closed" : "Blocked";
   const who = by === null ? "" : `, says ${robotName(by)}`;
   return `${what} between ${from} and ${to} until ${wholeClock(until_s)}${who}`;
+}
+
+/** "3 cm": with a chance of 95 % a robot is so near to where it says that it is. */
+export function sureInWords(covariance: readonly number[]): string {
+  const { rx } = likelyEllipse(covariance);
+  return rx < 1 ? `${Math.max(1, Math.ceil(100 * rx))} cm` : `${rx.toFixed(1)} m`;
 }
 
 /** A time of the site's clock without tenths. */

@@ -9,7 +9,7 @@ import { may } from "../state/access";
 import * as rest from "../wire/rest";
 import type { ErrandEnded, FleetRobot, FleetView } from "../wire/types";
 import type { FleetEvent } from "./fleet_past";
-import { isAtInWords, placeInWords, wholeClock } from "./fleet_words";
+import { isAtInWords, placeInWords, sureInWords, wholeClock } from "./fleet_words";
 
 interface RobotsListProps {
   fleet: FleetView;
@@ -70,7 +70,8 @@ function Row({ fleet, robot, seen, came, onShow, changed }: RowProps) {
         )}
       </div>
       <p class="small">
-        {where}; {isAtInWords(robot)}.{robot.aboard.length > 0 && ` It has ${robot.aboard.join(", ")} aboard.`}
+        {where}
+        {robot.pose?.covariance != null && ` (sure to ${sureInWords(robot.pose.covariance)})`}; {isAtInWords(robot)}.{robot.aboard.length > 0 && ` It has ${robot.aboard.join(", ")} aboard.`}
       </p>
       {came !== null && <p class="small quiet">{errandInWords(came)}</p>}
       {may("operator") && <Deeds {...{ fleet, robot, changed }} />}
