@@ -13,6 +13,7 @@ from mend.errors import ConflictError, NotFoundError, RefusalError
 from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd, LegOutcome
+from mend.server.access.principal import RESERVED
 from mend.server.background import Endless
 from mend.server.fleets.closed_ways import ClosedWays
 from mend.server.fleets.errands import Errands
@@ -339,7 +340,8 @@ class FleetAtWork:
         found = Found(finding=Finding(way.finding), between=(a, b), until_s=way.until_s)
         async with self._told():
             self.dispatcher.found(found, self.now_s)
-            self.closed_ways.note(found, None if author is None else author.principal)
+            named = author is not None and author.principal not in RESERVED
+            self.closed_ways.note(found, author.principal if author and named else None)
             finding = way.finding.replace("_", " ")
             self._note(f"said of the way between {a} and {b}: {finding}", author)
 

@@ -4,7 +4,7 @@ import { sentence } from "../run/run_words";
 import type { Lane, TimelineItem } from "../run/timeline/lanes";
 import type { ErrandBegun, FleetRobot, LegBegun, LegEnded, PlannedStop } from "../wire/types";
 import type { FleetEvent } from "./fleet_past";
-import { doesInWords, placeInWords, wholeClock } from "./fleet_words";
+import { authorInWords, doesInWords, placeInWords, wholeClock } from "./fleet_words";
 
 /** What passes from one robot to another: rows, and when it is given and taken. */
 export interface Transfer {
@@ -115,7 +115,7 @@ function legTitle({ robot, action, booking, place, start }: LegBegun): string {
 }
 
 function errandTitle({ robot, place, start, author }: ErrandBegun): string {
-  const why = author === null ? "to make way" : `sent by ${author.principal}`;
+  const why = author === null ? "to make way" : `sent by ${authorInWords(author)}`;
   return `${robotName(robot)} goes to ${placeInWords(place)}, from ${placeInWords(start)}, ${why}`;
 }
 
@@ -164,7 +164,7 @@ export function changeInWords(event: FleetEvent): readonly string[] {
       return [sentence(event.reason), ...whom, ...Object.entries(event.said).map(([who, said]) => sentence(`${robotName(who)}: ${said}`))];
     }
     case "fleet_told": {
-      const who = event.author?.principal ?? (event.finder === null ? "Somebody" : robotName(event.finder));
+      const who = event.finder === null ? authorInWords(event.author) : robotName(event.finder);
       return [sentence(`${who}: ${event.told}`)];
     }
     default:

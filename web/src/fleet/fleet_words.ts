@@ -22,6 +22,13 @@ export function doesInWords(action: string, request: string): string {
   return (ACTIONS[action] ?? (() => `${action} ${request}`))(request);
 }
 
+/** Who does not say who they are has a principal's name all the same. */
+const UNNAMED: ReadonlySet<string> = new Set(["anybody", "token"]);
+
+export function authorInWords(author: { principal: string } | null): string {
+  return author === null || UNNAMED.has(author.principal) ? "somebody" : author.principal;
+}
+
 /** "F1 101" of "F1/101", as people read it. */
 export function placeInWords(place: string): string {
   return place.replace("/", " ");

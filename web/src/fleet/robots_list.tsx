@@ -151,8 +151,8 @@ interface SendToProps {
 function SendTo({ name, places, onSend, onCancel }: SendToProps) {
   const [place, setPlace] = useState(places[0] ?? "");
   return (
-    <Confirm title={`Send ${name} where?`} confirm="Send it" onConfirm={() => onSend(place)} onCancel={onCancel}>
-      <div class="field">
+    <Confirm title={`Send ${name} where?`} confirm="Send it" harmless onConfirm={() => onSend(place)} onCancel={onCancel}>
+      <div class="field fleet-asked-for">
         <label for="fleet-send-to">Place</label>
         <select id="fleet-send-to" value={place} onChange={(event) => setPlace(event.currentTarget.value)}>
           {places.map((each) => (
@@ -176,7 +176,7 @@ function TakeOut({ name, onTake, onCancel }: { name: string; onTake(reason: stri
   return (
     <Confirm title={`Take ${name} out of service?`} confirm="Take it out" onConfirm={take} onCancel={onCancel}>
       <p>It breaks off what it does, and others fetch what it has aboard.</p>
-      <div class="field">
+      <div class="field fleet-asked-for">
         <label for="fleet-out-why">Why</label>
         <input id="fleet-out-why" type="text" maxLength={LONGEST} value={reason} onInput={(event) => setReason(event.currentTarget.value)} />
       </div>
