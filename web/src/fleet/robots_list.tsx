@@ -64,8 +64,8 @@ function Row({ fleet, robot, seen, came, onShow, changed }: RowProps) {
         </button>
         <State robot={robot} seen={seen} />
         {robot.run !== null && (
-          <a class="small" href={`/runs/${robot.run}`} aria-label={`The run of ${seen.name}`}>
-            Run
+          <a class="small" href={`/runs/${robot.run}`}>
+            Run<span class="unseen"> of {seen.name}</span>
           </a>
         )}
       </div>
@@ -109,25 +109,20 @@ function Deeds({ fleet, robot, changed }: { fleet: FleetView; robot: FleetRobot;
   return (
     <>
       <div class="fleet-deeds">
-        <button type="button" class="small-button" aria-label={`Send ${name} home`} onClick={() => send(robot.home)}>
+        <Deed of={name} onDo={() => send(robot.home)}>
           Send home
-        </button>
-        <button type="button" class="small-button" aria-label={`Send ${name} somewhere`} onClick={() => setAsked("send")}>
+        </Deed>
+        <Deed of={name} onDo={() => setAsked("send")}>
           Send …
-        </button>
+        </Deed>
         {robot.out_of_service === null ? (
-          <button type="button" class="small-button" aria-label={`Take ${name} out of service`} onClick={() => setAsked("out")}>
+          <Deed of={name} onDo={() => setAsked("out")}>
             Out of service …
-          </button>
+          </Deed>
         ) : (
-          <button
-            type="button"
-            class="small-button"
-            aria-label={`Put ${name} back in service`}
-            onClick={() => run(rest.putRobotBack(fleet.site, robot.robot))}
-          >
+          <Deed of={name} onDo={() => run(rest.putRobotBack(fleet.site, robot.robot))}>
             Back in service
-          </button>
+          </Deed>
         )}
       </div>
       <p class="mistake small" role="alert">
@@ -138,6 +133,16 @@ function Deeds({ fleet, robot, changed }: { fleet: FleetView; robot: FleetRobot;
         <TakeOut name={name} onTake={(reason) => run(rest.takeRobotOut(fleet.site, robot.robot, reason))} onCancel={() => setAsked(null)} />
       )}
     </>
+  );
+}
+
+/** A button that says of which robot it is to who does not see where it stands. */
+function Deed({ of, onDo, children }: { of: string; onDo(): void; children: string }) {
+  return (
+    <button type="button" class="small-button" onClick={onDo}>
+      {children}
+      <span class="unseen"> {of}</span>
+    </button>
   );
 }
 

@@ -60,10 +60,10 @@ function ClosedWays({ closed, tell }: { closed: readonly ClosedWayView[]; tell(w
             <button
               type="button"
               class="small-button"
-              aria-label={`Open the way between ${each.between.map(placeInWords).join(" and ")}`}
               onClick={() => tell({ finding: "open", between: each.between as [string, string] })}
             >
               It is open
+              <span class="unseen"> between {each.between.map(placeInWords).join(" and ")}</span>
             </button>
           )}
         </li>
