@@ -195,7 +195,7 @@ class Site:
         self.changed()
 
     def robot_posed(self, robot: str, poses: Poses) -> None:
-        """Nobody watches a robot that no run has."""
+        """No run watches it; what it said last the registry knows."""
 
     async def robot_lost(self, robot: str, reason: str) -> None:
         """A robot's connection is gone and has not come back."""
