@@ -5,7 +5,7 @@ import re
 import pytest
 from console_in_browser import OpenPage
 from office_with_fleet import open_office_with_fleet
-from playwright.async_api import Locator, Page, ViewportSize, expect
+from playwright.async_api import Locator, Page, Route, ViewportSize, expect
 
 from mend.fleet.requests import DeliverMessage, GoToRoom, Transport
 from mend.server.composition import Service
@@ -14,6 +14,7 @@ from mend.server.composition import Service
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 LONG_MS = 60_000
+NAMES = ("ROBOT1", "ROBOT2")
 WIDE = ViewportSize(width=1440, height=1600)
 PARCEL = Transport(name="parcel", what="the blue parcel", origin="F1/101", destination="F1/106")
 # Lines that are upright have no width of their own to be clicked on.
@@ -179,3 +180,54 @@ async def test_what_its_robots_ask_is_answered_there(service: Service, open_page
 async def test_without_a_fleet_the_page_says_so(open_page: OpenPage) -> None:
     page = await open_page("/fleet")
     await expect(page.get_by_text("No robots take requests")).to_be_visible(timeout=LONG_MS)
+
+
+async def test_who_is_no_operator_looks_and_is_told_what_that_takes(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service)
+    page = await open_page("/", viewport=WIDE)
+    session = {"required": True, "signed_in": True, "name": "vera", "role": "viewer"}
+    await page.route("**/api/session", lambda route: route.fulfill(json=session))
+    await page.goto("/fleet")
+    await expect(row(page, "ROBOT1")).to_contain_text("On F1, at charger1", timeout=LONG_MS)
+    await expect(row(page, "ROBOT1").get_by_role("button")).to_have_count(1)
+    await expect(page.get_by_text("Closing a way needs the role operator")).to_be_visible()
+    await expect(page.get_by_label("Way on F1")).to_have_count(0)
+
+
+async def test_what_changes_robots_is_linked_from_row_to_row(
+    service: Service, open_page: OpenPage
+) -> None:
+    site = await open_office_with_fleet(service, robots=2, floors=2)
+    fleet = await service.fleets.fleet(site)
+    one, two = fleet.dispatcher.fleet.robots
+    leg = {"place": "F1/103", "request": "tea", "slack_s": 5.0}
+    gives = {**leg, "action": "give", "begins_s": 60.0, "done_s": 90.0, "partner": two}
+    takes = {**leg, "action": "take", "begins_s": 100.0, "done_s": 130.0, "partner": one}
+
+    async def with_transfer(route: Route) -> None:
+        answer = await route.fetch()
+        view = await answer.json()
+        for robot, stop in zip(view["robots"], (gives, takes), strict=True):
+            robot["stops"] = [stop]
+        await route.fulfill(json=view)
+
+    page = await open_page("/", viewport=WIDE)
+    await page.route("**/api/sites/*/fleet", with_transfer)
+    await page.goto("/fleet")
+    link = page.locator(".chart-link[data-request=tea] path")
+    await expect(link).to_have_count(1, timeout=LONG_MS)
+    ends = [await lane(page, name).locator("rect.body").bounding_box() for name in NAMES]
+    drawn = await link.bounding_box()
+    assert drawn is not None
+    (first, second) = ends
+    assert first is not None
+    assert second is not None
+    assert drawn["x"] == pytest.approx(first["x"] + first["width"], abs=3)
+    assert drawn["x"] + drawn["width"] == pytest.approx(second["x"], abs=3)
+    assert drawn["y"] == pytest.approx(first["y"] + first["height"] / 2, abs=3)
+    assert drawn["y"] + drawn["height"] == pytest.approx(second["y"] + second["height"] / 2, abs=3)
+    await page.get_by_role("button", name="As a table").click()
+    table = page.get_by_role("region", name="The plan as a table")
+    await expect(table).to_contain_text("ROBOT1 hands tea to ROBOT2 at 1:40.")

@@ -1,4 +1,5 @@
 // The rows of a fleet's chart: what each robot did, is at and is to do, and why its plan changed.
+import { howLong } from "../building/standing";
 import { robotName } from "../question/fault_words";
 import { sentence } from "../run/run_words";
 import type { Lane, TimelineItem } from "../run/timeline/lanes";
@@ -126,7 +127,7 @@ function planned({ robot, stops, at_work }: FleetRobot, index: number, now: numb
   return goals.map((stop, order) => {
     const isNow = order === 0 && at_work?.request === stop.request && at_work.place === stop.place;
     const start = isNow ? now : Math.max(stop.begins_s, now);
-    const slack = stop.slack_s < 1e6 ? `, may be ${Math.round(stop.slack_s)} s late` : "";
+    const slack = stop.slack_s < 1e6 ? `, may be ${howLong(stop.slack_s)} late` : "";
     const partner = stop.partner === null ? "" : `, with ${robotName(stop.partner)}`;
     const does = doesInWords(stop.action, stop.request);
     return {
