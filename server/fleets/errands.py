@@ -3,7 +3,7 @@
 import asyncio
 import logging
 from collections.abc import Iterable, Mapping
-from uuid import uuid4
+from uuid import UUID, uuid4
 
 from mend.errors import ConflictError, RefusalError
 from mend.fleet.dispatch.dispatcher import Dispatcher
@@ -35,6 +35,8 @@ class Errands:
         self._site, self._dispatcher, self._places = site, dispatcher, places
         self._options, self._runs = options, runs
         self._going = {each.robot: each for each in going}
+        self._unwanted: set[UUID] = set()
+        """The runs that were broken off before they had begun."""
 
     @property
     def going(self) -> Mapping[str, Errand]:
@@ -71,6 +73,8 @@ class Errands:
         request = way_request(self._site.id, errand.robot, self._options)
         tree = way_of(self._places.in_scene(errand.place))
         await self._runs.start_run_of(errand.run, request, tree)
+        if errand.run in self._unwanted:
+            await self.break_off(errand)
         view = await self._runs.wait_for_end(errand.run)
         if not view.status.ended:
             # The service stops, and goes on with it at its next start.
@@ -87,9 +91,11 @@ class Errands:
             await self._runs.abort(errand.run)
         except RefusalError as error:
             log.info("the errand of %s was over, or not begun: %s", errand.robot, error)
+            self._unwanted.add(errand.run)
 
     def end(self, errand: Errand, at: str) -> None:
         """Its robot is at a place, which plans know from now on."""
         del self._going[errand.robot]
+        self._unwanted.discard(errand.run)
         if self._dispatcher.fleet.robots[errand.robot].works:
             self._dispatcher.robot_moved(errand.robot, at, self._dispatcher.now_s)

@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from dispatch_office import asked, office, visit
@@ -10,7 +11,7 @@ from test_legs_as_runs import PATIENCE_S, Work, _fleet, working
 from mend.errors import ConflictError, NotFoundError
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.requests import RequestStatus
-from mend.server.access.principal import Role
+from mend.server.access.roles import Role
 from mend.server.fleets.fleet_record import FleetRecord
 from mend.server.fleets.fleets import KIND
 from mend.server.journal import events as ev
@@ -26,6 +27,8 @@ async def until_no_errand(work: Work) -> None:
     async with asyncio.timeout(PATIENCE_S):
         while work.fleet.errands:  # noqa: ASYNC110 - nobody tells of it
             await asyncio.sleep(0)
+        # What came of it is journaled before anybody else has their turn.
+        await work.fleet.read(lambda _: None)
 
 
 async def ends(work: Work) -> list[ev.ErrandEnded]:
@@ -111,6 +114,24 @@ async def test_who_is_taken_out_on_its_way_breaks_off() -> None:
         assert going.ended.result() == ("aborted", False)
         await until_no_errand(work)
         assert [each.came for each in await ends(work)] == [False]
+
+
+async def test_who_is_taken_out_before_its_run_has_begun_breaks_off_once_it_has(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async with working("a") as work:
+        may_begin, begin = asyncio.Event(), work.runs.start_run_of
+
+        async def begin_late(*run: Any) -> None:
+            await may_begin.wait()
+            await begin(*run)
+
+        monkeypatch.setattr(work.runs, "start_run_of", begin_late)
+        await work.fleet.send("r0", "e", None)
+        await work.fleet.take_out("r0", "its wheel squeaks", None)
+        may_begin.set()
+        assert (await work.runs.nth(1)).ended.result() == ("aborted", False)
+        await until_no_errand(work)
 
 
 async def test_after_a_restart_the_same_errand_goes_on() -> None:

@@ -121,6 +121,8 @@ class FakeRuns:
         return _View(status, done, of.behavior)
 
     async def abort(self, run: UUID, author: object = None) -> Any:  # noqa: ARG002
+        if not await self.has_run(run):
+            raise NotFoundError(f"there is no run {run}")
         next(each for each in self.runs if each.id == run).ended.set_result(("aborted", False))
         await self.aborted.wait()
 

@@ -20,16 +20,18 @@ export function useRequests(site: string, againMs = AGAIN_MS): Requests & { agai
   const [asked, setAsked] = useState(0);
   useEffect(() => {
     let current = true;
-    const read = () =>
-      Promise.all([rest.requests(site), rest.fleet(site)]).then(
+    let timer = 0;
+    const read = async () => {
+      await Promise.all([rest.requests(site), rest.fleet(site)]).then(
         ([requests, fleet]) => current && setFound({ requests, fleet, failure: "" }),
         (error: Error) => current && setFound((before) => ({ ...before, failure: error.message })),
       );
+      if (current) timer = window.setTimeout(() => void read(), againMs);
+    };
     void read();
-    const timer = setInterval(() => void read(), againMs);
     return () => {
       current = false;
-      clearInterval(timer);
+      window.clearTimeout(timer);
     };
   }, [site, asked, againMs]);
   return { ...found, again: () => setAsked((count) => count + 1) };
