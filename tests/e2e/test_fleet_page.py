@@ -231,3 +231,48 @@ async def test_what_changes_robots_is_linked_from_row_to_row(
     await page.get_by_role("button", name="As a table").click()
     table = page.get_by_role("region", name="The plan as a table")
     await expect(table).to_contain_text("ROBOT1 hands tea to ROBOT2 at 1:40.")
+
+
+async def test_a_place_is_picked_on_the_plan_and_a_robot_sent_there(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service, 5.0)
+    page = await open_page("/fleet", viewport=WIDE)
+    await expect(row(page, "ROBOT1")).to_contain_text("has nothing to do", timeout=LONG_MS)
+    await page.locator(".plan-hits g[data-place='F1/103'] circle.hit").click()
+    sending = page.get_by_role("group", name="Send a robot to F1 103")
+    await sending.get_by_role("button", name="Go there").click()
+    await expect(row(page, "ROBOT1")).to_contain_text("goes to F1 103", timeout=LONG_MS)
+    await expect(lane(page, "ROBOT1").filter(has_text="ROBOT1 goes to F1 103")).to_have_count(1)
+    await expect(row(page, "ROBOT1")).to_contain_text("It came to F1 103 at", timeout=LONG_MS)
+
+
+async def test_how_sure_a_robot_is_of_its_place_is_drawn_round_it(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service)
+
+    async def unsure(route: Route) -> None:
+        answer = await route.fetch()
+        view = await answer.json()
+        for robot in view["robots"]:
+            if robot["pose"] is not None:
+                robot["pose"]["covariance"] = [1.0, 0.0, 0.25]
+        await route.fulfill(json=view)
+
+    page = await open_page("/fleet", viewport=WIDE)
+    ellipse = page.locator(".plan-unsure")
+    mark = page.locator(".plan-robot .plan-mark")
+    await expect(mark).to_be_visible(timeout=LONG_MS)
+    # The robots of this office are told where they are.
+    await expect(ellipse).to_be_hidden()
+    await page.route("**/api/sites/*/fleet", unsure)
+    await expect(ellipse).to_be_visible(timeout=LONG_MS)
+    await expect(row(page, "ROBOT1")).to_contain_text("(sure to 2.4 m)")
+    around, within = await ellipse.bounding_box(), await mark.bounding_box()
+    assert around is not None
+    assert within is not None
+    assert around["width"] == pytest.approx(2 * around["height"], rel=0.05)
+    assert around["x"] + around["width"] / 2 == pytest.approx(
+        within["x"] + within["width"] / 2, abs=2
+    )
