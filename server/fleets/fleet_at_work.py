@@ -164,6 +164,11 @@ class FleetAtWork:
         """The site's clock, as far as it is known: it never goes back."""
         return max(self.dispatcher.now_s, self._site.world.time.latest_s)
 
+    @property
+    def shown_s(self) -> float:
+        """The site's clock for who watches it: robots tell of it more often than plans need it."""
+        return max(self.now_s, self._site.shown_s)
+
     def _let_time_pass(self) -> None:
         """Have the site's clock run to when there is something to be done, if there ever is."""
         if not any(each.open for each in self.dispatcher.fleet.items.values()):

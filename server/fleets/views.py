@@ -160,7 +160,7 @@ class FleetView(View):
         """What is told of the fleet of a site."""
         return cls(
             site=fleet.site,
-            now_s=fleet.now_s,
+            now_s=fleet.shown_s,
             places=fleet.places.names,
             robots=_robots(fleet, dispatcher),
             closed=[

@@ -94,12 +94,18 @@ class Site:
         for robot in self._frames:
             self._registry.always_show_poses(robot, BASES_HZ)
 
+    @property
+    def shown_s(self) -> float:
+        """The world's clock, as far as reports and poses tell: for who watches it."""
+        poses = [self._registry.poses(robot) for robot in self._frames]
+        return max(self.world.time.latest_s, *(e.time for e in poses if e is not None), 0.0)
+
     def base(self, robot: str) -> SeenBase | None:
         """Where a robot says that it is, in the scene's frame; None until it has."""
         poses = self._registry.poses(robot)
         if poses is None:
             return None
-        age_s = max(0.0, self.world.time.latest_s - poses.time)
+        age_s = self.shown_s - poses.time
         return SeenBase(in_scene(self._frames[robot], poses.base), age_s, poses.covariance)
 
     def let_time_pass(self, until_s: float, rate: float | None) -> bool:

@@ -34,6 +34,15 @@ async def test_robots_say_where_they_are_and_how_sure() -> None:
         assert second.pose is None
 
 
+async def test_time_goes_on_with_what_robots_show_where_they_report_nothing() -> None:
+    async with working("a") as work:
+        assert (await view_of(work)).now_s == 0.0
+        work.site.shown_s = 42.0
+        assert (await view_of(work)).now_s == 42.0
+        work.site.time.heard(50.0)
+        assert (await view_of(work)).now_s == 50.0
+
+
 async def test_what_a_robot_is_at_is_told_apart_from_where_it_is_sent() -> None:
     async with working("a", "e") as work:
         await work.fleet.submit(asked(), None)

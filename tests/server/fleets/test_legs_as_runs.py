@@ -52,6 +52,7 @@ class FakeSite:
         self.standing: dict[str, tuple[float, float, float]] = {}
         self.runs: dict[str, UUID] = {}
         self.bases: dict[str, SeenBase] = {}
+        self.shown_s = 0.0
 
     def rests(self, robot: str) -> bool:
         return robot not in self.busy | self.gone
