@@ -23,6 +23,11 @@ class ToldWay(StrictModel):
     between: tuple[PlaceName, PlaceName]
     by: str | None
 
+    @property
+    def is_door(self) -> bool:
+        """Whether it is a door that was found closed there."""
+        return self.finding is Finding.DOOR_CLOSED
+
 
 class FleetRecord(StrictModel):
     """A fleet at work; `out_of_service`: the robots that somebody has taken out, and why.

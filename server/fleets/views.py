@@ -1,10 +1,9 @@
 """What clients see of requests and of the fleet that meets them."""
 
 from math import atan2
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 from uuid import UUID
 
-from mend.fleet.dispatch.leg import Finding
 from mend.fleet.requests import LegAction, RequestStatus
 from mend.server.runtime.views import View
 
@@ -12,6 +11,7 @@ if TYPE_CHECKING:
     from mend.fleet.dispatch.booking import RequestView as Booked
     from mend.fleet.dispatch.dispatcher import Dispatcher
     from mend.fleet.scheduling.replanning.live_plan import NextStop
+    from mend.server.fleets.closed_ways import ClosedWay
     from mend.server.fleets.fleet_at_work import FleetAtWork
     from mend.server.poses.bases import SeenBase
 
@@ -127,9 +127,20 @@ class ClosedWayView(View):
     """A way between two places that no plan uses until `until_s`, and who has found that."""
 
     between: list[str]
-    finding: Finding | None
+    finding: Literal["blocked", "door_closed"] | None
     by: str | None
     until_s: float
+
+    @classmethod
+    def of(cls, way: "ClosedWay") -> "ClosedWayView":
+        """What is told of a closed way."""
+        told = way.told
+        return cls(
+            between=list(way.between),
+            finding=None if told is None else "door_closed" if told.is_door else "blocked",
+            by=None if told is None else told.by,
+            until_s=way.until_s,
+        )
 
 
 class PlanChangeView(View):
@@ -163,15 +174,7 @@ class FleetView(View):
             now_s=fleet.shown_s,
             places=fleet.places.names,
             robots=_robots(fleet, dispatcher),
-            closed=[
-                ClosedWayView(
-                    between=list(each.between),
-                    finding=None if each.told is None else each.told.finding,
-                    by=None if each.told is None else each.told.by,
-                    until_s=each.until_s,
-                )
-                for each in fleet.closed_ways.now()
-            ],
+            closed=[ClosedWayView.of(each) for each in fleet.closed_ways.now()],
             changes=[
                 PlanChangeView(
                     number=each.number,

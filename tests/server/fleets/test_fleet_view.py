@@ -8,7 +8,6 @@ from test_errands import OLGA
 from test_legs_as_runs import Work, _fleet, working
 
 from mend.fleet.dispatch.dispatcher import Dispatcher
-from mend.fleet.dispatch.leg import Finding
 from mend.fleet.requests import LegAction
 from mend.server.fleets.fleet_record import FleetRecord
 from mend.server.fleets.fleets import KIND
@@ -65,7 +64,7 @@ async def test_closed_ways_are_told_with_who_found_them_until_they_are_open() ->
         (closed,) = (await view_of(work)).closed
         assert (closed.between, closed.finding, closed.by) == (
             ["f/b", "f/c"],
-            Finding.BLOCKED,
+            "blocked",
             "olga",
         )
         assert closed.until_s == pytest.approx(900.0)
@@ -85,7 +84,7 @@ async def test_who_found_a_way_closed_is_known_after_a_restart() -> None:
         work.fleet = _fleet(work.site, work.runs, work.journal, again, was)
         work.fleet.start()
         (closed,) = (await view_of(work)).closed
-        assert (closed.finding, closed.by) == (Finding.DOOR_CLOSED, "olga")
+        assert (closed.finding, closed.by) == ("door_closed", "olga")
 
 
 async def test_records_of_an_older_mend_have_neither_errands_nor_closed_ways() -> None:
