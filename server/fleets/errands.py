@@ -2,7 +2,7 @@
 
 import asyncio
 import logging
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from uuid import UUID, uuid4
 
 from mend.errors import ConflictError, RefusalError
@@ -27,11 +27,13 @@ class Errands:
         site: Site,
         dispatcher: Dispatcher,
         places: PlaceNames,
-        options: FleetOptions,
+        options: Callable[[], FleetOptions],
         runs: Runs,
         going: Iterable[Errand],
     ) -> None:
-        """`going`: those that were under way when the service stopped."""
+        """`going`: those that were under way when the service stopped. `options`: as they are by
+        then when an errand begins.
+        """
         self._site, self._dispatcher, self._places = site, dispatcher, places
         self._options, self._runs = options, runs
         self._going = {each.robot: each for each in going}
@@ -70,7 +72,7 @@ class Errands:
 
         Raises a `RefusalError` where it cannot be begun.
         """
-        request = way_request(self._site.id, errand.robot, self._options)
+        request = way_request(self._site.id, errand.robot, self._options())
         tree = way_of(self._places.in_scene(errand.place))
         await self._runs.start_run_of(errand.run, request, tree)
         if errand.run in self._unwanted:

@@ -75,7 +75,12 @@ class FleetAtWork:
         self._changed = asyncio.Event()
         self._legs: dict[str, tuple[LegExecution, asyncio.Task[None]]] = {}
         self._errands = Errands(
-            site, dispatcher, places, options, runs, () if kept is None else kept.errands
+            site,
+            dispatcher,
+            places,
+            lambda: self._options,
+            runs,
+            () if kept is None else kept.errands,
         )
         self._going: dict[str, asyncio.Task[None]] = {}
         self.closed_ways = ClosedWays(dispatcher, () if kept is None else kept.closed_ways)
