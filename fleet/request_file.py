@@ -1,4 +1,4 @@
-"""Request files: what people of a building want, one after the other."""
+"""Request files: what people of a building want, and what happens there meanwhile."""
 
 from pathlib import Path
 from typing import Annotated
@@ -9,7 +9,8 @@ from mend.documents.document import DocumentError, LinedMapping, read_document, 
 from mend.documents.problem import InvalidFileError, Problem
 from mend.documents.strict_model import StrictModel
 from mend.documents.validation import find_line, show_kind, validate_part
-from mend.fleet.requests import Request
+from mend.fleet.happenings import Cancelled, Happening
+from mend.fleet.requests import Moment, Request, RequestName
 
 MOST_REQUESTS = 1000
 
@@ -19,9 +20,14 @@ class RequestFileError(InvalidFileError):
 
 
 class RequestsDocument(StrictModel):
-    """What a request file says."""
+    """What a request file says.
+
+    `asked_s`: when a request is made, by its name; at once if it is not among them.
+    """
 
     requests: Annotated[tuple[Request, ...], Field(min_length=1, max_length=MOST_REQUESTS)]
+    asked_s: dict[RequestName, Moment] = {}
+    happenings: Annotated[tuple[Happening, ...], Field(max_length=MOST_REQUESTS)] = ()
 
 
 def read_request_file(path: Path) -> RequestsDocument:
@@ -55,6 +61,25 @@ def read_request_text(text: str, *, source: str = "requests") -> RequestsDocumen
             for number, name in enumerate(names)
             if name in names[:number]
         ]
+        problems += _unknown_names(content, document)
     if document is None or problems:
         raise RequestFileError(source, problems)
     return document
+
+
+def _unknown_names(content: LinedMapping, document: RequestsDocument) -> list[Problem]:
+    """Requests that are named where something is said of them, but are not there."""
+    # One that recurs is called after its first, `NAME/1` and so on.
+    known = {each.name for each in document.requests}
+    named: list[tuple[str, tuple[str | int, ...]]]
+    named = [(name, ("asked_s", name)) for name in document.asked_s]
+    named += [
+        (each.request, ("happenings", number, "request"))
+        for number, each in enumerate(document.happenings)
+        if isinstance(each, Cancelled)
+    ]
+    return [
+        Problem(find_line(content, where), None, f"no request here is called '{name}'")
+        for name, where in named
+        if name.split("/", 1)[0] not in known
+    ]

@@ -19,6 +19,7 @@ from mend.robots.link.messages import (
     ActiveExecution,
     ClipTaken,
     CommandBody,
+    Driven,
     Finished,
     Hello,
     Holding,
@@ -149,6 +150,11 @@ class Robot:
         for each in self._subsystems:
             poses = each.show(poses)
         return poses
+
+    def driven(self) -> Driven | None:
+        """What its base has driven so far; None without one."""
+        told = (each.driven for each in self._subsystems)
+        return next((each for each in told if each is not None), None)
 
     def attach(self, emit: Emit, emit_picture: EmitPicture) -> None:
         """Say where reports and pictures go; called once, before anything else."""

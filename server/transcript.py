@@ -72,6 +72,8 @@ DEEDS: dict[Act, str] = {
     Act.PUT_IN: "puts {object} into the robot's basket",
     Act.TAKE_OUT: "takes {object} out of the robot's basket",
     Act.CHARGE: "plugs the robot in",
+    Act.BAR: "bars the way between {between}",
+    Act.CLEAR: "clears the way between {between}",
 }
 
 PROMISES: dict[Help, str] = {
@@ -420,7 +422,10 @@ def told_start(run: UUID, tree: str, started: StartedRun) -> str:
 
 def deed_text(intervention: Intervention) -> str:
     """What a person does, as the end of a sentence that begins with who it is."""
-    text = DEEDS[intervention.act].format(object=intervention.object or "something")
+    text = DEEDS[intervention.act].format(
+        object=intervention.object or "something",
+        between=" and ".join(intervention.between or ()),
+    )
     if intervention.act is Act.STEAL and intervention.manner == "pull":
         text = f"pulls {intervention.object} out of the gripper"
     if intervention.act is Act.RELEASE and intervention.object and intervention.place is None:

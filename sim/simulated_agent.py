@@ -5,6 +5,7 @@ from typing import Any
 from mend.robots.agent import Emit, EmitPicture
 from mend.robots.link.messages import (
     CommandBody,
+    Driven,
     Finished,
     Held,
     Hello,
@@ -72,6 +73,10 @@ class SimulatedAgent:
         """Where everything is now; the parts where they really are, where the world shows that."""
         poses, objects = self._robot.poses(), self._surroundings.shown_poses()
         return poses if objects is None else poses.model_copy(update={"objects": list(objects)})
+
+    def driven(self) -> Driven | None:
+        """What its base has driven so far, by its wheels; None without one."""
+        return self._robot.driven()
 
     def attach(self, emit: Emit, emit_picture: EmitPicture) -> None:
         """Say where reports and pictures go; called once, before anything else."""

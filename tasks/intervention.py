@@ -36,6 +36,10 @@ class Act(StrEnum):
     """Take out of a robot's basket what it hands over."""
     CHARGE = "charge"
     """Plug in robots that stand with little left in their batteries."""
+    BAR = "bar"
+    """Bar a way of a building: lock its doors, or put things right across it."""
+    CLEAR = "clear"
+    """Unlock what was locked on a way, or take away what was put across it."""
 
 
 _WITHOUT_OBJECT = (
@@ -46,17 +50,23 @@ _WITHOUT_OBJECT = (
     Act.PUT_IN,
     Act.TAKE_OUT,
     Act.CHARGE,
+    Act.BAR,
+    Act.CLEAR,
 )
+_OF_WAYS = (Act.BAR, Act.CLEAR)
+PlaceOfBuilding = Annotated[str, Field(min_length=1, max_length=130)]
+"""A place of a building with its floor, as `F1/hall`."""
 
 
 class Intervention(StrictModel):
     """One thing that a person does in a world.
 
-    `object` is required by every act but `block`, `release`, `cover`, `uncover` and `charge`, and
-    `put_in` and `take_out`, which are about any robot that asks for it where they name none;
-    `place` (a name of the scene) by `place`; `to` by `move`. A `release` with both `object` and
-    `place` frees that place as well, one with an `object` alone puts that aside. `manner` says how
-    `steal` takes the object: `vanish` at once, or `pull` it out of the gripper by force.
+    `object` is required by every act but `block`, `release`, `cover`, `uncover`, `charge`, `bar`,
+    `clear`, and `put_in` and `take_out`, which are about any robot that asks for it where they
+    name none; `place` (a name of the scene) by `place`; `to` by `move`. A `release` with both
+    `object` and `place` frees that place as well, one with an `object` alone puts that aside.
+    `manner` says how `steal` takes the object: `vanish` at once, or `pull` it out of the gripper by
+    force. `between`: the neighbouring places of a building whose way is to be barred, or cleared.
     """
 
     act: Annotated[Act, Field(strict=False)]
@@ -64,6 +74,7 @@ class Intervention(StrictModel):
     place: Name | None = None
     to: Pose | None = None
     manner: Literal["vanish", "pull"] = "vanish"
+    between: Annotated[tuple[PlaceOfBuilding, PlaceOfBuilding] | None, Field(strict=False)] = None
 
     @model_validator(mode="after")
     def _require_what_the_act_needs(self) -> Self:
@@ -71,4 +82,6 @@ class Intervention(StrictModel):
             raise ValueError(f"act '{self.act}' needs an 'object'")
         if self.act is Act.MOVE and self.to is None:
             raise ValueError("act 'move' needs a pose 'to'")
+        if self.act in _OF_WAYS and self.between is None:
+            raise ValueError(f"act '{self.act}' needs two places 'between' which the way is")
         return self

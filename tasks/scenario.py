@@ -10,6 +10,7 @@ from mend.tasks.scene import Name, Pose
 
 Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
 Seconds = Annotated[float, Field(ge=0.0, le=3600.0)]
+WEEK_S = 604_800.0
 
 
 class Trigger(StrictModel):
@@ -28,7 +29,7 @@ class ScriptedIntervention(StrictModel):
     """An intervention and when it happens: at a moment of task progress or at a time."""
 
     when: Trigger | None = None
-    at_s: Seconds | None = None
+    at_s: Annotated[float, Field(ge=0.0, le=WEEK_S)] | None = None
     do: Intervention
 
     @model_validator(mode="after")

@@ -15,12 +15,17 @@ def distances_m(points: Matrix, segments: Matrix) -> Matrix:
     """How far each point (n, 2) is from the nearest of segments (m, 4); inf where there is none."""
     if not len(segments):
         return np.full(len(points), np.inf)
+    return np.asarray(apart_m(points, segments).min(axis=1))
+
+
+def apart_m(points: Matrix, segments: Matrix) -> Matrix:
+    """How far each point (n, 2) is from each segment (m, 4), as (n, m)."""
     start, along = segments[:, :2], segments[:, 2:] - segments[:, :2]
     offset = points[:, None] - start
     lengths = np.maximum((along**2).sum(axis=1), 1e-12)
     share = np.clip((offset * along).sum(axis=2) / lengths, 0.0, 1.0)
     away = offset - share[..., None] * along
-    return np.asarray(np.hypot(away[..., 0], away[..., 1]).min(axis=1))
+    return np.asarray(np.hypot(away[..., 0], away[..., 1]))
 
 
 def clearance_m(start: Point, end: Point, segments: Matrix) -> float:

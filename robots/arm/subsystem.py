@@ -76,6 +76,7 @@ class ArmSubsystem:
         self._shown = ShownArm(body, catalogue, self._perception)
 
     keeps_clear = False
+    driven = None
 
     @property
     def behaviors(self) -> Collection[str]:

@@ -9,6 +9,7 @@ from mend.maps.building.cabin import CABIN_M
 from mend.robots.base.basket import Basket, LoadSense, NoBasket
 from mend.robots.base.battery import Battery, MainsPower
 from mend.robots.base.body import BaseBody, BasePose
+from mend.robots.base.driven_way import DrivenWay
 from mend.robots.base.elevators import Elevators, NoElevators
 from mend.robots.base.jumps import Jumps
 from mend.robots.base.motion.surroundings import Seen, Surroundings, hidden_behind
@@ -17,6 +18,7 @@ from mend.robots.base.motion.way_follower import WayFollower
 from mend.robots.base.ways import Ways
 from mend.robots.base.whereabouts import AlwaysKnown, Whereabouts
 from mend.robots.execution.effector import Effector
+from mend.robots.link.messages import Driven
 
 _SLOW_M_S, _SLOW_RAD_S = 0.05, 0.1
 _SEES_OUT = 0.05
@@ -62,6 +64,7 @@ class Base(Effector[BaseBody]):
         self._speed = 1.0
         self._surroundings = Surroundings()
         self._jumps = Jumps()
+        self._way = DrivenWay()
         self._following: WayFollower | None = None
         self._barred: WayFollower | None = None
 
@@ -87,6 +90,8 @@ class Base(Effector[BaseBody]):
             self.body.stop()
             return
         self.body.move(self._following.choose(here, now, seen, self.pace))
+        if self._following.barred and self.slow:
+            self._way.stood(self.body.control_period_s)
 
     def stop(self) -> None:
         """Brake; it is on no way any more."""
@@ -110,6 +115,10 @@ class Base(Effector[BaseBody]):
         """Whether it stands, or is about to."""
         now = self.body.velocity()
         return now.speed_m_s < _SLOW_M_S and abs(now.turn_rad_s) < _SLOW_RAD_S
+
+    def driven(self) -> Driven:
+        """What it has driven so far."""
+        return self._way.so_far(self.body.odometry())
 
     @property
     def following(self) -> WayFollower | None:
@@ -170,6 +179,7 @@ class Base(Effector[BaseBody]):
         moves nothing that it sees around it.
         """
         wheels, scan = self.body.odometry(), self.body.scan()
+        self._way.note(wheels)
         seen = self._surroundings.take(scan, wheels, self.body.time_s())
         seen = seen.in_frame_of(wheels).seen_from(here)
         return seen.with_still(hidden_behind(scan, here, self.ways.walls(here)))

@@ -28,6 +28,7 @@ from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.monitor import AnyMonitor, for_view
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
+    Driven,
     Location,
     Look,
     Looked,
@@ -69,6 +70,10 @@ class BaseSubsystem:
     @property
     def behaviors(self) -> Collection[str]:
         return self._behaviors
+
+    @property
+    def driven(self) -> Driven:
+        return self.effector.driven()
 
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> BaseExecution:
         """What a start command asks for, not begun. Raises `CommandError`."""

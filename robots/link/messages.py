@@ -205,6 +205,16 @@ class ShownPose(Message):
     hidden: bool = False
 
 
+class Driven(Message):
+    """What a base has driven since its program began: how far, by its wheels (metres).
+
+    `barred_s`: how long it stood meanwhile before what barred its way, on its way.
+    """
+
+    way_m: Annotated[float, Field(ge=0, le=1e9)]
+    barred_s: Span
+
+
 class ActiveExecution(Message):
     """What a robot was doing when it said hello."""
 
@@ -217,12 +227,16 @@ class ActiveExecution(Message):
 
 
 class StepStarted(Message):
-    """A behavior's step has begun; steps count from 1."""
+    """A behavior's step has begun; steps count from 1.
+
+    `phase`: what the step is for, as `travel`, `ride`, `load`, `unload` or `tell`.
+    """
 
     type: Literal["step_started"] = "step_started"
     execution: Word
     step: Count
     name: Word
+    phase: Word | None = None
 
 
 class IssueDetected(Message):
@@ -514,7 +528,7 @@ class Hello(Message):
     `executing`: what it is doing, if anything. `reach`: None of a robot that takes hold of nothing.
     `shows`: what its `poses` hold; None if it sends none. `room`: without it no other robot of its
     run works while its arm does not rest. `keeps_clear`: it moves about and keeps clear of others
-    by what it senses itself, so that no space is kept for it.
+    by what it senses itself, so that no space is kept for it. `driven`: None without a base.
     """
 
     type: Literal["hello"] = "hello"
@@ -531,6 +545,7 @@ class Hello(Message):
     shows: PoseLayout | None = None
     room: RoomLimits | None = None
     keeps_clear: bool = False
+    driven: Driven | None = None
 
 
 class Report(Message):
@@ -538,7 +553,7 @@ class Report(Message):
 
     `boot` None is the boot of the hello; a report that an earlier start of the robot's program
     left undelivered names its own. `world`: a simulated world's state after it, from which it can
-    be rebuilt.
+    be rebuilt. `driven`: so far.
     """
 
     type: Literal["report"] = "report"
@@ -547,6 +562,7 @@ class Report(Message):
     time: Time
     body: ReportBody
     world: JsonObject | None = None
+    driven: Driven | None = None
 
 
 class Heartbeat(Message):

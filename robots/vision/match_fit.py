@@ -25,6 +25,9 @@ _QUARTERS_RAD = (0.0, math.pi / 2)
 _AS_WELL = 1.2
 """A rectangle fits a half hidden surface as well as another if its misfit is not larger by more."""
 
+_OF_SEEN = 0.8
+"""A rectangle that explains a surface holds so much of it, at least, as one that fits best."""
+
 
 def fit_match(
     match: Match, surfaces: Surfaces, stood: Location | None, carried: Sequence[Rectangle]
@@ -54,7 +57,9 @@ def fit_match(
     # Of a corner that is seen the rest may lie either way: it stands as it did if that fits, too.
     if stood is not None and _is_so_high(match, stood, surfaces):
         still = fit_sized(evidence, [Rectangle(stood.x, stood.y, stood.yaw, match.extents)])
-        return still if still.misfit <= _AS_WELL * best.misfit else best
+        # Of a small piece far from there nearly as little is left over, explained or not.
+        explains = still.shown >= _OF_SEEN * best.shown and still.shown > 0.0
+        return still if explains and still.misfit <= _AS_WELL * best.misfit else best
     return _fit_under(carried, evidence, best) if carried else best
 
 

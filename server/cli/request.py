@@ -6,6 +6,7 @@ from uuid import UUID
 
 import typer
 
+from mend.server.cli.failures import CommandLineError
 from mend.server.cli.rows import print_rows
 from mend.server.cli.site import SERVICE, Token, Url, asked
 
@@ -37,7 +38,12 @@ def make(
     """Make the requests of a file, and print when each is expected to be done."""
     from mend.fleet.request_file import read_request_file
 
-    requests = read_request_file(file).requests
+    document = read_request_file(file)
+    if document.happenings or document.asked_s:
+        raise CommandLineError(
+            f"{file}: 'asked_s' and 'happenings' are for `mend building run`: here people ask"
+        )
+    requests = document.requests
 
     async def make_all(client: "MendClient") -> list["RequestView"]:
         at = await _site(client, site)

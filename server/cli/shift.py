@@ -1,15 +1,18 @@
-"""A shift in a building: a site of its own, the requests of a file, and what became of them."""
+"""A shift in a building: a site of its own, the requests of a file, and what happens meanwhile."""
 
-from collections.abc import AsyncIterator, Sequence
+import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 from uuid import UUID
 
-import typer
-
-from mend.fleet.requests import STATUS, RequestStatus
+from mend.errors import ConflictError, RefusalError
+from mend.fleet.happenings import Cancelled, Happening, NobodyAnswers, RobotFails, WayBarred
 from mend.server.cli.failures import NOT_FINISHED
 from mend.server.cli.local_user import local_author
+from mend.server.cli.shift_transcript import ShiftTranscript
 from mend.server.documents import DocumentKind
 from mend.server.fixed_documents import GivenFiles
 from mend.server.fleets.request_refused import RequestRefusedError
@@ -18,24 +21,32 @@ from mend.server.journal.stored_event import read_event
 from mend.server.journal.subscriptions import SubscriptionOverflowError
 from mend.server.settings import Settings
 from mend.server.sites.requests import FleetOptions, SiteRequest
-from mend.server.transcript import Tone, Transcript
+from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scenario import ScriptedIntervention
 from mend.tasks.scene import Scene
 
 if TYPE_CHECKING:
     from mend.fleet.dispatch.booking import AnyRequest
+    from mend.fleet.request_file import RequestsDocument
     from mend.server.composition import Service
+    from mend.server.fleets.fleet_at_work import FleetAtWork
 
-_TOLD = (Tone.FAULT, Tone.SAID, Tone.ASKED, Tone.ANSWERED, Tone.DEED, Tone.SETBACK)
-"""Of what robots do in their legs only what is said, and why, is told."""
+
+@dataclass(frozen=True, slots=True)
+class Due:
+    """Something to be done at a moment of the site's clock."""
+
+    at_s: float
+    do: Callable[[], Awaitable[None]]
 
 
 class Shift:
-    """Has the robots of a scene meet requests, and prints what happens."""
+    """Has the robots of a scene meet requests, whatever happens, and prints that."""
 
     def __init__(
         self,
         scene: Scene,
-        requests: Sequence["AnyRequest"],
+        document: "RequestsDocument",
         *,
         seed: int,
         options: dict[str, Any],
@@ -43,7 +54,7 @@ class Shift:
         speed: float | Literal["max"],
     ) -> None:
         self._scene = scene
-        self._requests = requests
+        self._document = document
         self._site = SiteRequest(
             scene=scene.name,
             world="building",
@@ -51,11 +62,11 @@ class Shift:
             seed=seed,
             world_options=options,
             fleet=fleet,
+            interventions=_interventions(document.happenings),
         )
-        self._open: set[str] = set()
-        self._ended: dict[str, str] = {}
-        self._transcripts: dict[UUID, tuple[Transcript, float]] = {}
-        self._now_s = 0.0
+        self._told = ShiftTranscript()
+        self._to_come = len(document.requests)
+        self._over = asyncio.Event()
 
     async def carry_out(self, settings: Settings) -> int:
         """Run it to its end and return the exit code: 0 where everything was done."""
@@ -64,61 +75,97 @@ class Shift:
         text = self._scene.model_dump_json(exclude_defaults=True)
         given = GivenFiles({DocumentKind.SCENE: {self._scene.name: text}})
         async with open_service(settings, recover=False, given=given) as service:
-            site = (await service.sites.open_site(self._site, local_author())).id
-            for request in self._requests:
-                await self._ask(service, site, request)
-            if self._open:
-                async for event in _events(service):
-                    self._tell(event)
-                    if not self._open:
-                        break
-        return self._sum_up()
+            view = await service.sites.open_site(self._site, local_author())
+            robots = {each.stands: each.robot for each in view.robots}
+            async with asyncio.TaskGroup() as tasks:
+                telling = tasks.create_task(self._tell(service))
+                happening = tasks.create_task(self._have_happen(service, view.id, robots))
+                await self._over.wait()
+                telling.cancel()
+                happening.cancel()
+            await self._close(service, view.id)
+        return 0 if self._told.sum_up() else NOT_FINISHED
+
+    async def _close(self, service: "Service", site: UUID) -> None:
+        """Robots that still make way do so no more."""
+        await service.fleets.close_site(site)
+        with suppress(ConflictError):
+            await service.sites.close_site(site, local_author())
+
+    async def _tell(self, service: "Service") -> None:
+        async for event in _events(service):
+            self._told.tell(event)
+            self._end_if_over()
+
+    def _end_if_over(self) -> None:
+        if not self._to_come and not self._told.open:
+            self._over.set()
+
+    # --- What happens ---------------------------------------------------------------------------
+
+    async def _have_happen(self, service: "Service", site: UUID, robots: Mapping[str, str]) -> None:
+        fleet = await service.fleets.fleet(site)
+        asked_s = self._document.asked_s
+        due = [
+            Due(asked_s.get(each.name, 0.0), partial(self._ask, service, site, each))
+            for each in self._document.requests
+        ]
+        for happening in self._document.happenings:
+            due += _moments(happening, fleet, robots)
+        for each in sorted(due, key=lambda each: each.at_s):
+            await fleet.wait_until(each.at_s)
+            try:
+                await each.do()
+            except RefusalError as error:
+                self._told.say(str(error))
 
     async def _ask(self, service: "Service", site: UUID, request: "AnyRequest") -> None:
         try:
             _, booked = await service.fleets.submit(site, request, local_author())
-        except RequestRefusedError as error:
-            self._say(f"refused: {error}")
-            self._ended[request.name] = "refused"
-        else:
-            self._open.add(booked.name)
+            self._told.booked(booked.name)
+        except RequestRefusedError:
+            # What is refused is journaled, and told by that.
+            self._told.open.discard(request.name)
+        except RefusalError as error:
+            self._told.refused(request.name, str(error))
+        self._to_come -= 1
+        self._end_if_over()
 
-    def _tell(self, event: ev.Event) -> None:
-        match event:
-            case ev.RequestChanged():
-                self._now_s = event.at_s
-                self._tell_of_request(event)
-            case ev.PlanChanged():
-                self._now_s = event.at_s
-                others = f" ({', '.join(event.requests)})" if event.requests else ""
-                self._say(f"plan {event.number}: {event.reason}{others}")
-            case ev.RunStarted():
-                self._transcripts[event.run] = Transcript(), self._now_s
-                self._say(f"{event.robots[0]} begins to {event.tree_name.replace('_', ' ')}")
-            case _ if event.run in self._transcripts:
-                transcript, since_s = self._transcripts[event.run]
-                for line in transcript.lines(event):
-                    if line.tone in _TOLD:
-                        self._now_s = max(self._now_s, since_s + line.time_s)
-                        by = f"{line.speaker}: " if line.speaker else ""
-                        self._say(f"  {by}{line.text}")
 
-    def _tell_of_request(self, event: ev.RequestChanged) -> None:
-        by = f" by {event.robot}" if event.robot else ""
-        due = f", expected at {event.done_s:.0f} s" if event.done_s is not None else ""
-        why = f": {event.reason}" if event.reason else ""
-        self._say(f"'{event.request}' is {event.status.replace('_', ' ')}{by}{due}{why}")
-        if STATUS.is_last(RequestStatus(event.status)):
-            self._open.discard(event.request)
-            self._ended[event.request] = event.status
+def _interventions(happenings: tuple[Happening, ...]) -> list[ScriptedIntervention]:
+    """What people do in the building itself."""
+    done = []
+    for each in happenings:
+        if isinstance(each, WayBarred):
+            bar = Intervention(act=Act.BAR, between=each.between)
+            done.append(ScriptedIntervention(at_s=each.at_s, do=bar))
+            if each.until_s is not None:
+                clear = Intervention(act=Act.CLEAR, between=each.between)
+                done.append(ScriptedIntervention(at_s=each.until_s, do=clear))
+    return done
 
-    def _sum_up(self) -> int:
-        done = sum(each == RequestStatus.DONE for each in self._ended.values())
-        self._say(f"{done} of {len(self._ended)} requests are done")
-        return 0 if done == len(self._ended) else NOT_FINISHED
 
-    def _say(self, text: str) -> None:
-        typer.echo(f"{self._now_s:8.1f}  {text}")
+def _moments(happening: Happening, fleet: "FleetAtWork", robots: Mapping[str, str]) -> list[Due]:
+    """What is to be told to the fleet, and when."""
+    author = local_author()
+    match happening:
+        case WayBarred():
+            return []
+        case Cancelled(at_s=at_s, request=request):
+
+            async def cancel() -> None:
+                await fleet.cancel(request, author)
+
+            return [Due(at_s, cancel)]
+        case RobotFails(robot=robot, reason=reason):
+            name = robots.get(robot, robot)
+            begin = partial(fleet.take_out, name, reason, author)
+            end = partial(fleet.put_back, name, author)
+        case NobodyAnswers():
+            begin = partial(fleet.have_answered, "late")
+            end = partial(fleet.have_answered, "yes")
+    over = [] if happening.until_s is None else [Due(happening.until_s, end)]
+    return [Due(happening.at_s, begin), *over]
 
 
 async def _events(service: "Service") -> AsyncIterator[ev.Event]:

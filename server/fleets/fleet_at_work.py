@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from datetime import datetime
 from functools import partial
-from typing import TypeVar
+from typing import Literal, TypeVar
 from uuid import UUID
 
 from mend.errors import ConflictError, NotFoundError, RefusalError
@@ -15,6 +15,7 @@ from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd, LegOutcome
 from mend.server.access.principal import RESERVED
 from mend.server.background import Endless
+from mend.server.fleets.alarms import Alarms
 from mend.server.fleets.closed_ways import ClosedWays
 from mend.server.fleets.errands import Errands
 from mend.server.fleets.fleet_news import FleetNews
@@ -31,6 +32,7 @@ from mend.server.fleets.runs import Runs
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Document, Entry, Journal
 from mend.server.poses.bases import SeenBase
+from mend.server.sites.odometer import Odometer
 from mend.server.sites.requests import FleetOptions
 from mend.server.sites.site import Site
 from mend.tasks.plugins import load_plugins
@@ -89,8 +91,11 @@ class FleetAtWork:
         self._hears: asyncio.Task[None] | None = None
         self._barred: dict[str, Found] = {}
         """What robots have found on the way to the place of the leg that they are on."""
+        self._set_out: dict[str, Odometer | None] = {}
+        """What robots had driven when they set out for the leg that they are on."""
         self._kept: FleetRecord | None = None
         self._noted: list[ev.Event] = []
+        self._alarms = Alarms(lambda: self.now_s)
         self.out_of_service = {} if kept is None else dict(kept.out_of_service)
         """The robots that somebody has taken out, and why."""
 
@@ -131,6 +136,7 @@ class FleetAtWork:
             under_way = self.dispatcher.legs_under_way()
             for execution, _ in self._legs.values():
                 execution.look_again()
+            self._alarms.ring()
             self._let_time_pass()
             errands = list(self._errands.going.values())
         for errand in errands:
@@ -153,6 +159,7 @@ class FleetAtWork:
         while due := [e for e in self.dispatcher.legs_to_begin(now_s) if self._is_free(e.robot)]:
             start = self._at(due[0].robot)
             self.dispatcher.began(due[0], now_s)
+            self._set_out[due[0].robot] = self._site.odometer(due[0].robot)
             self._noted.append(self._news.begun(due[0], start))
         return unwanted
 
@@ -176,13 +183,20 @@ class FleetAtWork:
 
     def _let_time_pass(self) -> None:
         """Have the site's clock run to when there is something to be done, if there ever is."""
-        if not any(each.open for each in self.dispatcher.fleet.items.values()):
-            return
-        now_s, wakes_s = self.now_s, self.dispatcher.wakes_s()
+        now_s, wakes_s, alarm_s = self.now_s, None, self._alarms.next_s
+        if any(each.open for each in self.dispatcher.fleet.items.values()):
+            wakes_s = self.dispatcher.wakes_s()
+        if alarm_s is not None:
+            wakes_s = min(alarm_s, wakes_s or alarm_s)
         if any(execution.waits for execution, _ in self._legs.values()):
             wakes_s = min(now_s + LOOKS_AGAIN_S, wakes_s or now_s + LOOKS_AGAIN_S)
         if wakes_s is not None:
             self._site.let_time_pass(max(wakes_s, now_s + 1.0), self._pace)
+
+    async def wait_until(self, moment_s: float) -> None:
+        """Have the site's clock come to a moment, whether or not there is anything to do."""
+        self._changed.set()
+        await self._alarms.wait(moment_s)
 
     # --- Legs ---------------------------------------------------------------------------------
 
@@ -297,8 +311,10 @@ class FleetAtWork:
                 end = refused
         if why is not None:
             # Others fetch what it has, and do what it was to do.
-            self.dispatcher.robot_failed(robot, end.at, why, now_s)
-        self._noted.append(self._news.ended(leg, end))
+            self.dispatcher.robot_failed(robot, self._met_at(robot), why, now_s)
+        odometer, before = self._site.odometer(robot), self._set_out.pop(robot, None)
+        driven = None if odometer is None else odometer.since(before)
+        self._noted.append(self._news.ended(leg, end, driven))
 
     def _at(self, robot: str) -> str:
         """The place that a robot is nearest to, as far as is known."""
@@ -306,6 +322,12 @@ class FleetAtWork:
         place = None if where is None else self.places.nearest(*where)
         known = self.dispatcher.fleet.robots[robot].place
         return place or self.dispatcher.building.graph.places[known].name
+
+    def _met_at(self, robot: str) -> str:
+        """Where others are brought what a robot has that does not get on: it may bar its place."""
+        where = self._site.whereabouts(robot)
+        place = None if where is None else self.places.beside(*where)
+        return place or self._at(robot)
 
     async def _arrived(self, leg: Leg) -> None:
         async with self._at_once:
@@ -369,7 +391,7 @@ class FleetAtWork:
             leg = next((e for e in self.dispatcher.legs_under_way() if e.robot == robot), None)
             errand = self._errands.going.get(robot)
             if leg is None and self.dispatcher.fleet.robots[robot].works:
-                self.dispatcher.robot_failed(robot, self._at(robot), reason, self.now_s)
+                self.dispatcher.robot_failed(robot, self._met_at(robot), reason, self.now_s)
         if leg is not None and robot in self._legs:
             await self._legs[robot][0].break_off()
         if errand is not None:
@@ -386,6 +408,11 @@ class FleetAtWork:
             self.places.in_scene(place)
             self._errands.require_free(robot)
             self._send(robot, self.dispatcher.building.find(place), author)
+
+    async def have_answered(self, answers: Literal["live", "yes", "late"]) -> None:
+        """Who answers robots in the legs that begin from now on."""
+        async with self._at_once:
+            self._options = self._options.model_copy(update={"answers": answers})
 
     async def put_back(self, robot: str, author: ev.Author | None) -> None:
         """A robot works again, from where it stands.

@@ -7,6 +7,7 @@ from uuid import UUID
 from mend.fleet.dispatch.booking import PlanChange, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Leg, LegEnd
+from mend.robots.link.messages import Driven
 from mend.server.fleets.fleet_record import Errand
 from mend.server.journal import events as ev
 
@@ -73,8 +74,8 @@ class FleetNews:
             start=start,
         )
 
-    def ended(self, leg: Leg, end: LegEnd) -> ev.LegEnded:
-        """What became of a leg."""
+    def ended(self, leg: Leg, end: LegEnd, driven: Driven | None) -> ev.LegEnded:
+        """What became of a leg, and what its robot has driven for it, as far as is known."""
         return ev.LegEnded(
             wall_time=self._utc_now(),
             site=self._site,
@@ -87,6 +88,8 @@ class FleetNews:
             outcome=end.outcome,
             reason=end.reason,
             at=end.at or leg.place,
+            driven_m=None if driven is None else driven.way_m,
+            barred_s=None if driven is None else driven.barred_s,
         )
 
     def errand_begun(self, errand: Errand, start: str, author: ev.Author | None) -> ev.ErrandBegun:
@@ -139,6 +142,10 @@ class FleetNews:
             requests=list(change.requests),
             robots=list(change.robots),
             said=dict(change.said),
+            transfers=[
+                ev.PlannedTransfer(request=name, sooner_s=saving.sooner_s, less_m=saving.less_m)
+                for name, saving in change.transfers.items()
+            ],
         )
 
 

@@ -33,6 +33,8 @@ BEHAVIORS = {
 _ARTICLE = re.compile(r"^(the|a|an)\s+", re.IGNORECASE)
 _NO_WORD = re.compile(r"[^A-Za-z0-9]+")
 _MOST_OF_WHAT = 31
+ASKED_IN_VAIN = 2
+"""When it is put, and when it is put again: then a question goes to somebody else."""
 MOST_ANSWERS = 20
 """So often a simulated person answers in one run."""
 
@@ -44,9 +46,9 @@ class LegStage(StrEnum):
     DO = "do"
 
 
-def run_of(site: UUID, leg: Leg, stage: LegStage) -> UUID:
-    """The id of the run: the same one, however often it is asked for."""
-    return uuid5(site, f"{leg.robot} {leg.number} {stage}")
+def run_of(site: UUID, robot: str, number: int, stage: LegStage) -> UUID:
+    """The id of the run of a robot's leg: the same one, however often it is asked for."""
+    return uuid5(site, f"{robot} {number} {stage}")
 
 
 def run_request(site: UUID, leg: Leg, options: FleetOptions) -> RunRequest:
@@ -63,7 +65,8 @@ def _request(site: UUID, tree: str, robot: str, options: FleetOptions) -> RunReq
     request = RunRequest(tree=tree, site=site, robots=[robot], answers="live")
     if options.answers == "live":
         return request
-    person = {"answers": ["yes"] * MOST_ANSWERS, "person": Person(acts=True)}
+    first = ["silence"] * ASKED_IN_VAIN if options.answers == "late" else []
+    person = {"answers": [*first, *["yes"] * MOST_ANSWERS], "person": Person(acts=True)}
     return request.model_copy(update=person)
 
 
@@ -92,9 +95,9 @@ def require_doable(request: AnyRequest, behaviors: Mapping[str, type[Behavior]])
             raise WrongInputError("; ".join(said), said) from error
 
 
-def way_of(place: str) -> TaskTreeDefinition:
-    """The task of going to a place, as the scene calls it."""
-    return _leaf(GO_TO, {"place": place})
+def way_of(place: str, near_m: float = 0.0) -> TaskTreeDefinition:
+    """The task of going to a place, as the scene calls it, or near to it if it is not free."""
+    return _leaf(GO_TO, {"place": place, "near_m": near_m} if near_m else {"place": place})
 
 
 def task_of(leg: Leg, place: str) -> TaskTreeDefinition:

@@ -9,6 +9,8 @@ from mend.tasks.scene import Scene
 
 SAME_M = 0.05
 """A place of a scene is one of the building's if it is not farther from it."""
+BESIDE_M = 1.0
+"""Two robots have room beside each other that stand so far apart."""
 
 
 class PlaceNames:
@@ -34,12 +36,26 @@ class PlaceNames:
 
     def nearest(self, x: float, y: float, z: float) -> str | None:
         """The place that is nearest to a position of the scene; None where there is no floor."""
+        return min(self._away_m(x, y, z), default=(0.0, None))[1]
+
+    def beside(self, x: float, y: float, z: float) -> str | None:
+        """The nearest place that robots are sent to, and that one at a position leaves free."""
+        free = [
+            each
+            for each in self._away_m(x, y, z)
+            if each[0] >= BESIDE_M and each[1] in self._called
+        ]
+        return min(free, default=(0.0, None))[1]
+
+    def _away_m(self, x: float, y: float, z: float) -> list[tuple[float, str]]:
+        """How far each place of the floor is, and what it is called."""
         floor = self._building.floor_at(z)
         if floor is None:
-            return None
+            return []
         places = self._building.floors[floor].places
-        nearest = min(places, key=lambda n: math.hypot(places[n].x - x, places[n].y - y))
-        return f"{floor}/{nearest}"
+        return [
+            (math.hypot(each.x - x, each.y - y), f"{floor}/{name}") for name, each in places.items()
+        ]
 
 
 def _called(building: Building, scene: Scene) -> Iterator[tuple[str, str]]:

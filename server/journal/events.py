@@ -126,13 +126,17 @@ class NodeTaken(NodeEvent):
 
 
 class StepStarted(NodeEvent):
-    """A behavior's step has begun (1 is the first)."""
+    """A behavior's step has begun (1 is the first).
+
+    `phase`: what it is for, as the robot says; None in the journals of an older Mend.
+    """
 
     type: Literal["step_started"] = "step_started"
     robot: str
     execution: UUID
     step: int
     step_name: str
+    phase: str | None = None
 
 
 class IssueRaised(NodeEvent):
@@ -684,10 +688,23 @@ class RequestChanged(FleetEvent):
     author: Author | None = None
 
 
+class PlannedTransfer(EventModel):
+    """A request's thing is to change robots: what that saves, as planned.
+
+    `sooner_s`: how much sooner it is delivered than by one robot alone; `less_m`: how much less far
+    all robots drive. Both are None where one alone could not bring it.
+    """
+
+    request: str
+    sooner_s: float | None
+    less_m: float | None
+
+
 class PlanChanged(FleetEvent):
     """The plan of a fleet became another one, and why; whom that touches.
 
-    `said`: a sentence by request or robot.
+    `said`: a sentence by request or robot. `transfers`: what is to change robots that was not
+    before, or not from this robot; the journals of an older Mend do not tell.
     """
 
     type: Literal["plan_changed"] = "plan_changed"
@@ -696,6 +713,7 @@ class PlanChanged(FleetEvent):
     requests: list[str]
     robots: list[str]
     said: dict[str, str]
+    transfers: list[PlannedTransfer] = []
 
 
 class FleetTold(FleetEvent):
@@ -731,12 +749,19 @@ class LegBegun(LegEvent):
 
 
 class LegEnded(LegEvent):
-    """What became of a leg, why where it was not done, and where its robot is then."""
+    """What became of a leg, why where it was not done, and where its robot is then.
+
+    `driven_m`: how far its robot has driven meanwhile, by its wheels, and `barred_s` how long it
+    stood on its way before what barred it; None where that is not known, and in the journals of an
+    older Mend.
+    """
 
     type: Literal["leg_ended"] = "leg_ended"
     outcome: str
     reason: str | None
     at: str
+    driven_m: float | None = None
+    barred_s: float | None = None
 
 
 class ErrandBegun(FleetEvent):

@@ -89,6 +89,7 @@ class ReportEvents:
                 execution=execution.id,
                 step=body.step,
                 step_name=body.name,
+                phase=body.phase,
             )
         ]
 

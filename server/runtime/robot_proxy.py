@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from mend.robots.arm.shared_space import Flat
 from mend.robots.link.messages import (
     CommandBody,
+    Driven,
     FeltLoad,
     FinishedResult,
     Hello,
@@ -93,6 +94,8 @@ class RobotProxy:
     """What space it has beyond where its arm rests; `Team` says when it may have it."""
     doing: RobotActivity = RobotActivity.ABSENT
     hello: Hello | None = None
+    driven: Driven | None = None
+    """What its base has driven since it booted, as it said last."""
     gone_for_good: bool = False
     restarts: int = 0
     livelock: Livelock = field(default_factory=Livelock)
@@ -163,6 +166,7 @@ class RobotProxy:
 
     def connect(self, hello: Hello) -> None:
         self.hello = hello
+        self.driven = hello.driven
         self.looked_at = None
         self.command = self.purpose = None
         executing = hello.executing

@@ -13,6 +13,7 @@ from mend.server.poses.bases import SeenBase, in_scene
 from mend.server.robots.registry import RobotRegistry
 from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
 from mend.server.runtime.team import Neighbour
+from mend.server.sites.odometer import Odometer
 from mend.server.sites.running_world import RunningWorld
 from mend.tasks.frames import Frame
 from mend.tasks.potential import Point
@@ -54,6 +55,7 @@ class Site:
         self._frames = dict(robots)
         self._resting = {name: self._at_rest(name) for name in robots}
         self._seen_at: dict[str, Point] = {}
+        self._odometers: dict[str, Odometer] = {}
         self._handed_over: dict[str, RobotProxy] = {}
         self._runs: dict[UUID, Run] = {}
         self.forgotten = False
@@ -107,6 +109,15 @@ class Site:
             return None
         age_s = self.shown_s - poses.time
         return SeenBase(in_scene(self._frames[robot], poses.base), age_s, poses.covariance)
+
+    def odometer(self, robot: str) -> Odometer | None:
+        """What a robot had driven when it last said so while no run had it, or at a run's end."""
+        return self._odometers.get(robot)
+
+    def _note_driven(self, proxy: RobotProxy) -> None:
+        if proxy.hello is not None and proxy.driven is not None:
+            told = Odometer(proxy.hello.boot, proxy.driven)
+            self._odometers[proxy.robot] = told.later(self._odometers.get(proxy.robot))
 
     def let_time_pass(self, until_s: float, rate: float | None) -> bool:
         """Have the world's clock run until then, also where no run has a robot.
@@ -175,6 +186,7 @@ class Site:
             return
         area, was_there = proxy.area, proxy.hello is not None and proxy.hello.boot == hello.boot
         proxy.connect(hello)
+        self._note_driven(proxy)
         self.world.came(robot)
         self.world.time.heard(hello.time)
         if was_there or hello.executing is not None:
@@ -193,6 +205,8 @@ class Site:
         proxy = self._resting.get(robot)
         if proxy is None:
             return
+        proxy.driven = report.driven or proxy.driven
+        self._note_driven(proxy)
         if isinstance(report.body, Holding):
             proxy.hold_execution(report.body)
             self.tell_neighbours(None)
@@ -232,6 +246,7 @@ class Site:
             resting = self._at_rest(robot)
             resting.hello, resting.area = proxy.hello, proxy.area
             self._seen_at[robot] = proxy.gripper
+            self._note_driven(proxy)
             self._resting[robot] = resting
         self.tell_neighbours(run)
         self.changed()

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict
 from mend.server.journal import events as ev
 from mend.server.sites.requests import FleetOptions
 from mend.sim.world import WorldSetup
+from mend.tasks.scenario import ScriptedIntervention
 from mend.tasks.scene import Scatter, Scene
 
 KIND = "site"
@@ -35,6 +36,7 @@ class SiteRecord(BaseModel):
     moved: dict[str, str] = {}
     author: ev.Author | None = None
     fleet: FleetOptions | None = None
+    interventions: list[ScriptedIntervention] = []
 
     @property
     def scene_now(self) -> Scene:
@@ -68,4 +70,5 @@ class SiteRecord(BaseModel):
             seed=self.seed,
             speed=None if self.speed == "max" else self.speed,
             options=self.options,
+            interventions=self.interventions,
         )

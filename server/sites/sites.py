@@ -136,6 +136,7 @@ class Sites:
             options=dict(request.world_options),
             author=author,
             fleet=request.fleet,
+            interventions=request.interventions,
         )
         self._opening += 1
         try:

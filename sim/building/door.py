@@ -1,6 +1,5 @@
 """A door of the world: open or shut, by itself or by people."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,9 +7,7 @@ import numpy as np
 from mend.maps.building.building import Door, DoorOpening
 from mend.maps.building.clearance import distances_m
 
-Point = tuple[float, float]
-
-_NOTICES_M = 1.8
+NOTICES_M = 1.8
 """A door that opens itself does so when somebody is so near."""
 _STAYS_OPEN_S = 4.0
 """After the last one has gone by."""
@@ -27,6 +24,7 @@ class WorldDoor:
     plan: Door
     is_shut: bool
     shuts_s: float | None = None
+    is_locked: bool = False
 
     @property
     def segment(self) -> tuple[float, float, float, float]:
@@ -38,13 +36,21 @@ class WorldDoor:
         return float(distances_m(np.array([[x, y]]), np.array([self.segment]))[0])
 
     def may_be_passed(self, time_s: float) -> bool:
-        """Whether it is one of the times at which it is not locked."""
+        """Whether nobody has locked it, and it is one of the times at which it may be open."""
         spans = self.plan.open_s
+        if self.is_locked:
+            return False
         return not spans or any(opens <= time_s < shuts for opens, shuts in spans)
 
-    def let_pass(self, time_s: float, near: Iterable[Point]) -> None:
-        """One cycle: open for who comes, shut behind them; nothing shuts on anybody."""
-        somebody = any(self.distance_m(*each) < _NOTICES_M for each in near)
+    @property
+    def heeds_who_comes(self) -> bool:
+        """Whether it may open or shut by itself; one that somebody left open or shut stays so."""
+        opens = self.plan.opens is DoorOpening.ITSELF
+        locks = self.is_locked and not self.is_shut
+        return opens or locks or self.shuts_s is not None or bool(self.plan.open_s)
+
+    def let_pass(self, time_s: float, *, somebody: bool) -> None:
+        """One cycle: open for who is within `NOTICES_M`, shut behind them; on nobody."""
         if not self.may_be_passed(time_s):
             self.is_shut = self.is_shut or not somebody
             return
@@ -52,6 +58,14 @@ class WorldDoor:
             self.hold_open(time_s + _STAYS_OPEN_S)
         elif self.shuts_s is not None and not somebody and time_s >= self.shuts_s:
             self.is_shut = True
+
+    def lock(self) -> None:
+        """Nobody opens it any more; it shuts once nobody is in it."""
+        self.is_locked = True
+
+    def unlock(self) -> None:
+        """It is shut, and may be opened again."""
+        self.is_locked = False
 
     def hold_open(self, until_s: float) -> None:
         """It is open, and does not fall shut before then."""

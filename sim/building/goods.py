@@ -107,11 +107,17 @@ class Goods:
 
     # --- What people do -----------------------------------------------------------------------
 
-    def put_in(self, name: str | None, stands_at: Callable[[int, str | None], bool]) -> str:
+    def put_in(
+        self,
+        name: str | None,
+        stands_at: Callable[[int, str | None], bool],
+        is_at_hand: Callable[[int, int], bool],
+    ) -> str:
         """Somebody puts in what a robot asks for, or what they took out of its basket before.
 
-        `stands_at`: whether a robot stands, and at a place where one is named. Returns why it
-        cannot be done, or nothing.
+        `stands_at`: whether a robot stands, and at a place where one is named; `is_at_hand`:
+        whether what another robot has can be brought to it. Returns why it cannot be done, or
+        nothing.
         """
         back = self._put_back(stands_at)
         if back:
@@ -133,7 +139,9 @@ class Goods:
         if forgets:
             return f"somebody forgot to put '{wish.item}' into the basket"
         item = self._item(wish.item, wish.place)
-        if item.place != wish.place:
+        other = item.robot
+        from_other = other is not None and not item.taken and is_at_hand(robot, other)
+        if item.place != wish.place and not from_other:
             return f"nobody at '{wish.place}' has '{wish.item}': it is {self._told(item)}"
         item.put_in(robot)
         return ""

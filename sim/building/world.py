@@ -14,6 +14,7 @@ from mend.maps.building.clearance import distances_m
 from mend.robots.base.battery import LOW
 from mend.robots.base.body import RangeScan
 from mend.sim.building import laser
+from mend.sim.building.barriers import Barriers
 from mend.sim.building.belief import Belief, BeliefSnapshot, FloorMap
 from mend.sim.building.building_robot import PERIOD_S, RADIUS_M, BuildingRobot, Senses
 from mend.sim.building.bystander import RADIUS_M as PERSON_RADIUS_M
@@ -21,7 +22,7 @@ from mend.sim.building.bystander import Bystander
 from mend.sim.building.cabin import Cabin, Call
 from mend.sim.building.carrying import Carrying
 from mend.sim.building.chargers import is_at_charger
-from mend.sim.building.door import WorldDoor
+from mend.sim.building.doors import WorldDoors
 from mend.sim.building.draws import read_draws, written_draws
 from mend.sim.building.elevator_bank import CabinSnapshot, ElevatorBank
 from mend.sim.building.floor_pose import FloorPose
@@ -48,6 +49,8 @@ _FURNITURE_FROM_ROBOTS_M = 1.0
 _TRIES_TO_PUT_DOWN = 20
 _BEFORE_PERSON_M = 1.5
 """Who is at a place reaches the basket of a robot that stands so near to it."""
+_AT_HAND_M = 10.0
+"""People go so far for what is in the basket of a robot that does not get on."""
 _HELD_OPEN_S = 30.0
 """What people opened for a robot falls shut after so long, once nobody is there."""
 
@@ -63,6 +66,7 @@ class WorldSnapshot(StrictModel):
     odometers: list[OdometerSnapshot]
     beliefs: list[BeliefSnapshot | None]
     # Older ones have none of these.
+    barred: list[tuple[str, str]] = []
     items: dict[str, ItemSnapshot] = {}
     wishes: dict[int, WishSnapshot] = {}
     baskets: list[BasketSnapshot] = []
@@ -104,15 +108,13 @@ class BuildingWorld:
         self.touches = self.carried = 0
         self._time_s = 0.0
         self.bystanders: list[Bystander] = []
-        self._doors = {
-            f"{floor}/{name}": WorldDoor(
-                f"{floor}/{name}",
-                plan,
-                plan.opens is DoorOpening.ITSELF or bool(rng.random() < options.shut_doors),
-            )
-            for floor, each in building.floors.items()
-            for name, plan in each.doors.items()
-        }
+        self.doors = WorldDoors(
+            building,
+            lambda door: (
+                door.opens is DoorOpening.ITSELF or bool(rng.random() < options.shut_doors)
+            ),
+        )
+        self._barriers = Barriers(building, self.doors)
         self._rng = rng
         self._furniture = furniture
         self._furniture_moves_s = _FURNITURE_MOVES_EVERY_S
@@ -123,7 +125,7 @@ class BuildingWorld:
         senses = Senses(self.time_s, self._height_m, self._scan, self.advance_cycle)
         self.robots = [self._robot(*start, senses, maps) for start in starts]
         self.batteries = [RobotBattery(options.battery_wh) for _ in self.robots]
-        self.walkers = Walkers(building, options.people, self._doors.values(), goods.seed)
+        self.walkers = Walkers(building, options.people, self.doors.values(), goods.seed)
         self.walkers.leave_room_for((each.at for each in self.robots), RADIUS_M)
         self.baskets = [RobotBasket(goods, each, goods.seed) for each in range(len(self.robots))]
 
@@ -145,9 +147,7 @@ class BuildingWorld:
 
     def advance_cycle(self) -> None:
         self._time_s += PERIOD_S
-        for door in self._doors.values():
-            floor = door.name.split("/", 1)[0]
-            door.let_pass(self._time_s, [(x, y) for x, y, _ in self._circles(floor)])
+        self.doors.let_pass(self._time_s, self._circles)
         self.walkers.walk(
             self._time_s, self.robots, [each.at for each in self.bystanders], self._segments
         )
@@ -202,11 +202,6 @@ class BuildingWorld:
 
     # --- What there is ---
 
-    @property
-    def doors(self) -> Mapping[str, WorldDoor]:
-        """By `FLOOR/DOOR`."""
-        return self._doors
-
     def _height_m(self, floor: str) -> float:
         return self.elevators.height_m(floor, self._time_s)
 
@@ -228,17 +223,13 @@ class BuildingWorld:
         cabins = self.elevators.walls(floor)
         if floor not in self.building.floors:
             return cabins
-        shut = [
-            each.segment
-            for each in self._doors.values()
-            if each.is_shut and each.name.startswith(f"{floor}/")
-        ]
         return np.vstack(
             [
                 self.building.floors[floor].wall_segments,
-                np.array(shut, np.float64).reshape(-1, 4),
+                self.doors.shut(floor),
                 cabins,
                 self._furniture.segments(floor),
+                self._barriers.segments(floor),
             ]
         )
 
@@ -280,15 +271,37 @@ class BuildingWorld:
             case Act.RELEASE:
                 return self._make_way()
             case Act.PUT_IN:
-                return self.goods.put_in(intervention.object, self._stands_at)
+                at_hand = self._stands_at_hand
+                return self.goods.put_in(intervention.object, self._stands_at, at_hand)
             case Act.TAKE_OUT:
                 return self.goods.take_out(intervention.object, self._stands_at)
             case Act.CHARGE:
                 return self._plug_in()
+            case Act.BAR | Act.CLEAR as act:
+                assert intervention.between is not None, "checked before"
+                return self._bar_or_clear(act, intervention.between)
             case Act.STEAL:
                 return self.goods.steal(intervention.object)
             case act:
                 return f"there is nothing in a building for which anybody could do '{act}'"
+
+    def _bar_or_clear(self, act: Act, lane: tuple[str, str]) -> str:
+        try:
+            if act is Act.CLEAR:
+                self._barriers.clear(lane)
+            elif (put := self._barriers.bar(lane)) is not None and self._stands_in(*put):
+                self._barriers.clear(lane)
+                return f"somebody is in the way between {lane[0]} and {lane[1]}"
+        except ValueError as error:
+            return str(error)
+        return ""
+
+    def _stands_in(self, floor: str, segments: NDArray[np.float64]) -> bool:
+        """Whether a robot or a person is where something is to be put."""
+        return any(
+            distances_m(np.array([[x, y]]), segments)[0] < radius_m
+            for x, y, radius_m in self._circles(floor)
+        )
 
     def _stands_at(self, number: int, place: str | None) -> bool:
         """Whether a robot really stands, and before who is at a place, where one is named."""
@@ -299,6 +312,12 @@ class BuildingWorld:
         if at is None or robot.at.floor != at.floor:
             return False
         return math.hypot(robot.at.x - at.x, robot.at.y - at.y) <= _BEFORE_PERSON_M
+
+    def _stands_at_hand(self, number: int, other: int) -> bool:
+        """Whether another robot stands so near that people bring a robot what that one has."""
+        here, there = self.robots[number].at, self.robots[other]
+        near = math.hypot(here.x - there.at.x, here.y - there.at.y) <= _AT_HAND_M
+        return near and here.floor == there.at.floor and not there.moving
 
     def _plug_in(self) -> str:
         """Somebody plugs in all robots that stand with little left."""
@@ -355,16 +374,10 @@ class BuildingWorld:
     def _open_for_who_waits(self) -> bool:
         opened = False
         for robot in self.robots:
-            near = [
-                (each.distance_m(robot.at.x, robot.at.y), each)
-                for each in self._doors.values()
-                if each.is_shut
-                and each.name.startswith(f"{robot.at.floor}/")
-                and each.may_be_passed(self._time_s)
-            ]
-            distance_m, door = min(near, key=lambda each: each[0], default=(math.inf, None))
-            if door is not None and distance_m < _AT_DOOR_M and not robot.moving:
-                door.hold_open(self._time_s + _HELD_OPEN_S)
+            at = robot.at
+            nearest = self.doors.nearest_shut(at.floor, at.x, at.y, self._time_s)
+            if nearest is not None and nearest[0] < _AT_DOOR_M and not robot.moving:
+                nearest[1].hold_open(self._time_s + _HELD_OPEN_S)
                 opened = True
         return opened
 
@@ -375,13 +388,14 @@ class BuildingWorld:
         kept = WorldSnapshot(
             time_s=self._time_s,
             robots=[(e.at.floor, e.at.x, e.at.y, e.at.yaw) for e in self.robots],
-            doors={name: (each.is_shut, each.shuts_s) for name, each in self._doors.items()},
+            doors={name: (each.is_shut, each.shuts_s) for name, each in self.doors.items()},
             bystanders=[(e.at.floor, e.at.x, e.at.y) for e in self.bystanders],
             cabins=self.elevators.snapshot(),
             odometers=[each.odometer.snapshot() for each in self.robots],
             beliefs=[
                 None if each.belief is None else each.belief.snapshot() for each in self.robots
             ],
+            barred=self._barriers.snapshot(),
             items=items,
             wishes=wishes,
             baskets=[each.snapshot() for each in self.baskets],
@@ -400,8 +414,9 @@ class BuildingWorld:
         kept = WorldSnapshot.model_validate_json(json.dumps(snapshot))
         if len(kept.robots) != len(self.robots):
             raise ValueError(f"expected {len(self.robots)} robots, got {len(kept.robots)}")
-        if kept.doors.keys() != self._doors.keys():
+        if kept.doors.keys() != self.doors.keys():
             raise ValueError("the snapshot has other doors than the building")
+        self._barriers.restore(kept.barred)
         self.elevators.restore(kept.cabins)
         self.goods.restore(kept.items, kept.wishes)
         if kept.baskets:
@@ -425,7 +440,7 @@ class BuildingWorld:
             if robot.belief is not None and belief is not None:
                 robot.belief.restore(belief)
         for name, (is_shut, shuts_s) in kept.doors.items():
-            self._doors[name].is_shut, self._doors[name].shuts_s = is_shut, shuts_s
+            self.doors[name].is_shut, self.doors[name].shuts_s = is_shut, shuts_s
         self.bystanders = [Bystander(FloorPose(*each)) for each in kept.bystanders]
 
     def close(self) -> None:

@@ -72,7 +72,7 @@ class BuildingBench:
         agent = next(each for each in self.group.agents if each.name == robot)
         agent.handle(f"c{self._sent}", body)
 
-    def go(self, robot: str, place: str, behavior: str = "go_to", **more: str) -> None:
+    def go(self, robot: str, place: str, behavior: str = "go_to", **more: str | float) -> None:
         """Start a behavior at a place; `more` are its other parameters."""
         pose = self.scene.places[place].pose
         x, y = frames_of(self.scene)[robot].to_robot(pose.x, pose.y)

@@ -16,6 +16,9 @@ from mend.server.composition import Service, open_service
 from mend.server.journal import events as ev
 from mend.server.journal.stored_event import read_event
 from mend.server.journal.subscriptions import Record
+from mend.server.report.fleet_history import FleetHistory
+from mend.server.report.leg_times import TimeUse, time_split
+from mend.server.report.span import Span
 from mend.server.settings import Settings
 from mend.server.sites.requests import FleetOptions, SiteRequest
 
@@ -91,10 +94,16 @@ async def test_a_service_that_stopped_goes_on_with_what_its_robots_were_doing(
         def drives(events: list[ev.Event]) -> bool:
             return sum(isinstance(each, ev.StepStarted) for each in events) > 0
 
-        await events_until(service, drives)
+        before = await events_until(service, drives)
     async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
         done = await until_over(service, {"room4", "room6"})
         runs = await service.journal.index.counts()
+        events = [read_event(each.seq, each.text) for each in await records_of(service)]
+    begun = {(each.robot, each.number) for each in before if isinstance(each, ev.LegBegun)}
+    ended = [each for each in events if isinstance(each, ev.LegEnded)]
+    # What was driven before the world began anew is known by nobody.
+    known = {(each.robot, each.number): each.driven_m for each in ended}
+    assert {known[leg] for leg in begun} == {None}
     assert done == {name: ["booked", "under_way", "done"] for name in done}
     assert runs == {"finished": 2}
 
@@ -116,6 +125,16 @@ async def test_things_are_brought_and_messages_told_over_two_floors(tmp_path: Pa
     assert any('"Lunch is ready."' in each for each in said)
     deeds = [each.act for each in events if isinstance(each, ev.InterventionDone)]
     assert deeds.count("put_in") == deeds.count("take_out") == 1
+    history = FleetHistory.of(site, events, Span())
+    assert all((ended.driven_m or 0.0) > 1.0 for _, ended in history.ended)
+    by_leg = {leg.begun.action: time_split(leg) for leg, _ in history.ended}
+    assert by_leg.keys() == {"collect", "hand_over", "deliver_message"}
+    assert all(split[TimeUse.NAVIGATION] > 0.0 for split in by_leg.values())
+    assert by_leg["collect"][TimeUse.START] > 0.0
+    assert by_leg["hand_over"][TimeUse.END] > 0.0
+    assert by_leg["deliver_message"][TimeUse.END] > 0.0
+    assert sum(split[TimeUse.ELEVATOR] for split in by_leg.values()) > 0.0
+    assert all(split[TimeUse.UNKNOWN] == 0.0 for split in by_leg.values())
 
 
 @pytest.mark.slow(10)

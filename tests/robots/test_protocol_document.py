@@ -21,6 +21,7 @@ def members(union: object) -> list[type[BaseModel]]:
 PARTS: dict[str, type[BaseModel]] = {
     "reach": m.ReachLimits,
     "executing": m.ActiveExecution,
+    "driven": m.Driven,
     "detection": m.Detection,
     "finished_result": m.FinishedResult,
     "sighting": m.Sighting,

@@ -177,10 +177,13 @@ def test_every_act_has_words(act: Act) -> None:
         Act.COVER: "camera",
         Act.UNCOVER: "camera",
         Act.CHARGE: "robot",
+        Act.BAR: "between F1/hall and F1/101",
+        Act.CLEAR: "between F1/hall and F1/101",
     }
     object_name = None if act in without else "pink_bar"
     to = Pose(x=0.5, y=0.0) if act is Act.MOVE else None
-    intervention = Intervention(act=act, object=object_name, to=to)
+    between = ("F1/hall", "F1/101") if act in (Act.BAR, Act.CLEAR) else None
+    intervention = Intervention(act=act, object=object_name, to=to, between=between)
     event = ev.InterventionDone(
         **EVENT, act=str(act), object=object_name, intervention=intervention, by="scenario"
     )

@@ -19,7 +19,7 @@ class Drive:
     """One step: drive to a pose, at `speed` in (0, 1] of the base's best.
 
     `wait_s` passes there before the next step. `phase` says what the step is for: monitors watch
-    phases.
+    phases. `near_m`: it is there, too, where it is so near and something keeps it from going on.
     """
 
     name: str
@@ -27,6 +27,7 @@ class Drive:
     speed: float = 1.0
     wait_s: float = 0.0
     phase: Phase = Phase.TRAVEL
+    near_m: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +85,23 @@ UNHEARD = "nobody_answers"
 """The issue that is settled by nothing but somebody's word that a message was heard."""
 
 
+def phase_of(step: BaseStep) -> Phase:
+    """What a step is for."""
+    match step:
+        case Drive(phase=phase):
+            return phase
+        case GetIn() | RideUntilThere():
+            return Phase.RIDE
+        case AwaitItem():
+            return Phase.LOAD
+        case AwaitTaken():
+            return Phase.UNLOAD
+        case Tell():
+            return Phase.TELL
+        case Charging():
+            return Phase.CHARGE
+
+
 @dataclass(frozen=True, slots=True)
 class BaseSituation:
     """What a behavior may know when it lays out its steps.
@@ -116,10 +134,17 @@ def steps_of_ride(ride: Ride) -> list[BaseStep]:
     return [*steps, RideUntilThere(f"ride to {ride.to_floor}", ride)]
 
 
-def steps_to(place: str, situation: BaseSituation) -> list[BaseStep]:
-    """Ride to the floor of a place and drive to it. Raises `CommandError` where there is none."""
+MEETS_M = 1.2
+"""People meet a robot at a place that cannot get nearer because somebody stands there."""
+
+
+def steps_to(place: str, situation: BaseSituation, near_m: float = 0.0) -> list[BaseStep]:
+    """Ride to the floor of a place and drive to it, or so near if something is in the way there.
+
+    Raises `CommandError` where there is no such place.
+    """
     if situation.target is None:
         raise CommandError(f"it is not known where '{place}' is")
     rides = situation.ways.rides(situation.here, situation.target)
     steps = [step for ride in rides for step in steps_of_ride(ride)]
-    return [*steps, Drive(f"go to {place}", situation.target)]
+    return [*steps, Drive(f"go to {place}", situation.target, near_m=near_m)]

@@ -7,6 +7,7 @@ from pydantic import AfterValidator, Field
 
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.behaviors.behavior import (
+    MEETS_M,
     BaseBehavior,
     BaseSituation,
     BaseStep,
@@ -50,4 +51,4 @@ class DeliverMessage(BaseBehavior):
 
     def steps(self, parameters: StrictModel, situation: BaseSituation) -> Sequence[BaseStep]:
         assert isinstance(parameters, MessageParameters), "commands are checked before"
-        return [*steps_to(parameters.place, situation), Tell("tell the message")]
+        return [*steps_to(parameters.place, situation, MEETS_M), Tell("tell the message")]

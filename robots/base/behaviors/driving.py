@@ -16,6 +16,9 @@ NEAR_M = 0.05
 TURNED_RAD = 0.09
 """A base is where it was to go when it is so near and turned no farther."""
 
+KEPT_OFF_S = 2.0
+"""Who only passes by is let pass."""
+
 
 class Driving:
     """Takes drives, and lets the monitors watch."""
@@ -29,12 +32,20 @@ class Driving:
         near = here.distance_m(goal) <= NEAR_M and abs(here.z - goal.z) < ON_FLOOR_M
         return near and here.turned_by_rad(goal) <= TURNED_RAD
 
+    def is_about_at(self, drive: Drive) -> bool:
+        """Whether the base is where a drive leads, or as near as is near enough."""
+        here = self._base.body.pose()
+        near = here.distance_m(drive.to) <= drive.near_m and abs(here.z - drive.to.z) < ON_FLOOR_M
+        return near or self.is_at(drive.to)
+
     def take(self, drive: Drive, no_more: Callable[[], bool] = lambda: False) -> Routine[None]:
         """Drive there, or until there is `no_more` reason to. Raises `Interruption`."""
         self._begin(drive)
         self._watch.check()
         headway = Headway(self._base.body.limits.turn_rad_s)
         while not (self.is_at(drive.to) and self._base.slow) and not no_more():
+            if self._is_kept_off(drive):
+                break
             if self._base.following is not None:
                 self._drive_on(drive, headway)
             self._watch.check_if_due()
@@ -42,6 +53,15 @@ class Driving:
         self._base.stop()
         yield from self._watched(self._base.settle())
         yield from self._watched(self._base.wait(drive.wait_s))
+
+    def _is_kept_off(self, drive: Drive) -> bool:
+        """Whether it is near enough, and something that is no door has barred its way for long."""
+        since_s = self._progress.blocked_since_s
+        if since_s is None or not self.is_about_at(drive):
+            return False
+        barrier = self._base.barrier()
+        stood_s = self._base.body.time_s() - since_s
+        return barrier is not None and barrier.door is None and stood_s >= KEPT_OFF_S
 
     def _begin(self, drive: Drive) -> None:
         progress = self._progress

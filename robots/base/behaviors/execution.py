@@ -15,6 +15,7 @@ from mend.robots.base.behaviors.behavior import (
     RideUntilThere,
     StandingStep,
     Tell,
+    phase_of,
 )
 from mend.robots.base.behaviors.driving import NEAR_M, Driving
 from mend.robots.base.behaviors.handling import Handling
@@ -129,7 +130,7 @@ class BaseExecution(Execution[BaseProgress]):
         steps = self._progress.steps
         before = steps[self._done - 1] if self._done else None
         stays = self._done == len(steps) or isinstance(steps[self._done], StandingStep)
-        return stays and isinstance(before, Drive) and not self._driving.is_at(before.to)
+        return stays and isinstance(before, Drive) and not self._driving.is_about_at(before)
 
     def _forget_other_offers(self) -> None:
         """What was offered where it stood is offered no more by who sets about something else."""
@@ -165,7 +166,9 @@ class BaseExecution(Execution[BaseProgress]):
 
     def _take(self, step: BaseStep) -> Routine[None]:
         """One step. Raises `Interruption`."""
-        self._report(StepStarted(execution=self.id, step=self.step, name=step.name))
+        self._report(
+            StepStarted(execution=self.id, step=self.step, name=step.name, phase=phase_of(step))
+        )
         match step:
             case Drive():
                 yield from self._driving.take(step)

@@ -4,13 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mend.robots.base.behaviors.behavior import (
-    AwaitItem,
-    AwaitTaken,
     BaseStep,
-    Charging,
-    Drive,
     StandingStep,
-    Tell,
+    phase_of,
 )
 from mend.robots.base.ways import Ride
 from mend.robots.execution.execution_state import ExecutionState
@@ -72,16 +68,6 @@ class BaseProgress(Progress):
             return Phase.PREPARE
         if self.wait is not None:
             return Phase.RIDE
-        match self.taken:
-            case Drive(phase=phase):
-                return phase
-            case AwaitItem():
-                return Phase.LOAD
-            case AwaitTaken():
-                return Phase.UNLOAD
-            case Tell():
-                return Phase.TELL
-            case Charging():
-                return Phase.CHARGE
-            case _:
-                return Phase.TRAVEL
+        # Who gets into a cabin drives: what is in its way there is in its way as anywhere.
+        phase = phase_of(self.taken)
+        return Phase.TRAVEL if phase is Phase.RIDE else phase

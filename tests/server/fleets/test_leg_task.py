@@ -61,9 +61,9 @@ def test_the_same_thing_is_meant_where_it_is_fetched_and_where_it_is_brought() -
 
 
 def test_each_leg_has_its_own_runs_and_always_the_same() -> None:
-    runs = {run_of(SITE, leg(number), stage) for number in (1, 2) for stage in LegStage}
+    runs = {run_of(SITE, "r0", number, stage) for number in (1, 2) for stage in LegStage}
     assert len(runs) == 4
-    assert run_of(SITE, leg(1), LegStage.DO) == run_of(SITE, leg(1), LegStage.DO)
+    assert run_of(SITE, "r0", 1, LegStage.DO) == run_of(SITE, "r0", 1, LegStage.DO)
 
 
 def test_what_no_robot_can_do_is_refused_before_it_is_booked() -> None:

@@ -14,6 +14,7 @@ from dispatch_office import asked, dispatcher_for, office, visit
 from mend.errors import ConflictError, NotFoundError
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.requests import RequestStatus
+from mend.robots.link.messages import Driven
 from mend.server.fleets import leg_execution
 from mend.server.fleets.fleet_at_work import FleetAtWork
 from mend.server.fleets.fleet_record import FleetRecord
@@ -26,6 +27,7 @@ from mend.server.journal.sqlite import SqliteJournal
 from mend.server.poses.bases import SeenBase
 from mend.server.runtime.clock import WorldTime
 from mend.server.runtime.views import RunStatus
+from mend.server.sites.odometer import Odometer
 from mend.server.sites.requests import FleetOptions
 from mend.tasks.definition import TaskTreeDefinition
 from mend.tasks.scene import Place, Pose, Scene
@@ -53,6 +55,10 @@ class FakeSite:
         self.runs: dict[str, UUID] = {}
         self.bases: dict[str, SeenBase] = {}
         self.shown_s = 0.0
+        self.odometers: dict[str, Odometer] = {}
+
+    def odometer(self, robot: str) -> Odometer | None:
+        return self.odometers.get(robot)
 
     def rests(self, robot: str) -> bool:
         return robot not in self.busy | self.gone
@@ -242,6 +248,21 @@ async def test_the_journal_tells_when_legs_begin_and_end_once_each_over_a_restar
             ("leg_ended", "r0", 1),
             ("leg_begun", "r0", 2),
         ]
+
+
+@pytest.mark.parametrize(("boot", "told"), [("b1", (7.5, 2.0)), ("b2", (None, None))])
+async def test_the_journal_tells_what_was_driven_for_a_leg_unless_the_robot_began_anew(
+    boot: str, told: tuple[float | None, float | None]
+) -> None:
+    async with working("a") as work:
+        work.site.odometers["r0"] = Odometer("b1", Driven(way_m=100.0, barred_s=5.0))
+        await work.fleet.submit(asked(), None)
+        fetching = await work.runs.nth(1)
+        work.site.odometers["r0"] = Odometer(boot, Driven(way_m=107.5, barred_s=7.0))
+        fetching.ended.set_result(("finished", True))
+        await work.runs.nth(2)
+        (ended,) = [e for e in await work.journal.read(0, 1000) if isinstance(e, ev.LegEnded)]
+        assert (ended.driven_m, ended.barred_s) == told
 
 
 async def test_after_a_restart_the_same_run_goes_on() -> None:

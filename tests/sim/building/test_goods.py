@@ -1,6 +1,7 @@
 """Whatever people do, nothing is lost or doubled, and a rebuilt world has all where it was."""
 
 import json
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -18,6 +19,15 @@ def anywhere(_robot: int, _place: str | None) -> bool:
 
 def nowhere(_robot: int, _place: str | None) -> bool:
     return False
+
+
+def far_off(_robot: int, _other: int) -> bool:
+    return False
+
+
+def near_or_far(rng: np.random.Generator) -> Callable[[int, int], bool]:
+    near = bool(rng.random() < 0.5)
+    return lambda _robot, _other: near
 
 
 def goods(forgetful: float = 0.0, seed: int = 3) -> Goods:
@@ -59,7 +69,7 @@ def act_somehow(made: Goods, rng: np.random.Generator) -> None:
         case 1:
             wish(made, str(item), str(place), hands_over=True, robot=robot)
         case 2 | 3:
-            made.put_in(None if rng.random() < 0.5 else str(item), stands)
+            made.put_in(None if rng.random() < 0.5 else str(item), stands, near_or_far(rng))
         case 4:
             made.take_out(None if rng.random() < 0.5 else str(item), stands)
         case _:
@@ -88,7 +98,7 @@ def test_nothing_is_lost_or_doubled_by_whatever_people_do(seed: int) -> None:
 def test_a_thing_is_with_somebody_where_it_is_first_asked_for() -> None:
     made = goods()
     wish(made, "mail", "a")
-    assert made.put_in("mail", anywhere) == ""
+    assert made.put_in("mail", anywhere, far_off) == ""
     assert made.items["mail"].robot == 0
     assert 0.2 <= made.load_kg(0) <= 2.0
 
@@ -96,47 +106,53 @@ def test_a_thing_is_with_somebody_where_it_is_first_asked_for() -> None:
 def test_what_is_elsewhere_cannot_be_put_in_a_second_time() -> None:
     made = goods()
     wish(made, "mail", "a")
-    made.put_in("mail", anywhere)
+    made.put_in("mail", anywhere, far_off)
     wish(made, "mail", "a", robot=1)
     made.wishes.pop(0)
-    assert made.put_in("mail", anywhere) == "nobody at 'a' has 'mail': it is in a robot's basket"
+    assert (
+        made.put_in("mail", anywhere, far_off)
+        == "nobody at 'a' has 'mail': it is in a robot's basket"
+    )
     wish(made, "mail", "b", hands_over=True)
     assert made.take_out("mail", anywhere) == ""
     assert made.items["mail"].delivered
-    assert made.put_in("mail", anywhere) == "nobody at 'a' has 'mail': it is with somebody at 'b'"
+    assert (
+        made.put_in("mail", anywhere, far_off)
+        == "nobody at 'a' has 'mail': it is with somebody at 'b'"
+    )
     assert len(made.items) == 1
 
 
 def test_a_robot_that_does_not_stand_there_is_given_nothing() -> None:
     made = goods()
     wish(made, "mail", "a")
-    assert made.put_in(None, nowhere) == "no robot asks for anything where it stands"
+    assert made.put_in(None, nowhere, far_off) == "no robot asks for anything where it stands"
     assert not made.items
 
 
 def test_what_was_taken_on_the_way_comes_back() -> None:
     made = goods()
     wish(made, "mail", "a")
-    made.put_in("mail", anywhere)
+    made.put_in("mail", anywhere, far_off)
     made.wishes.clear()
     assert made.steal("mail") == ""
     assert made.load_kg(0) == 0.0
     assert made.steal("mail") == "'mail' is in no robot's basket"
-    assert made.put_in(None, anywhere) == ""
+    assert made.put_in(None, anywhere, far_off) == ""
     assert made.load_kg(0) == made.items["mail"].weight_kg
 
 
 def test_who_forgets_does_nothing_or_puts_in_something_else_and_takes_that_out_again() -> None:
     made = goods(forgetful=1.0)
     wish(made, "mail", "a")
-    said = {made.put_in("mail", anywhere) for _ in range(20)}
+    said = {made.put_in("mail", anywhere, far_off) for _ in range(20)}
     assert said == {
         "somebody put something else into the basket",
         "somebody forgot to put 'mail' into the basket",
     }
     assert "mail" not in made.items
     made.forgetful = 0.0
-    assert made.put_in("mail", anywhere) == ""
+    assert made.put_in("mail", anywhere, far_off) == ""
     assert made.load_kg(0) == made.items["mail"].weight_kg
 
 
@@ -144,7 +160,7 @@ def test_who_takes_something_else_out_puts_it_back() -> None:
     made = goods()
     for each in ("mail", "keys"):
         wish(made, each, "a")
-        made.put_in(each, anywhere)
+        made.put_in(each, anywhere, far_off)
     wish(made, "mail", "b", hands_over=True)
     made.forgetful = 1.0
     while made.items["keys"].robot is not None:
@@ -160,6 +176,19 @@ def test_weights_are_drawn_by_the_seed_and_the_name_alone() -> None:
     for made, order in ((one, ("mail", "keys")), (other, ("keys", "mail"))):
         for each in order:
             wish(made, each, "a")
-            made.put_in(each, anywhere)
+            made.put_in(each, anywhere, far_off)
     assert one.items["mail"].weight_kg == other.items["mail"].weight_kg
     assert one.items["mail"].weight_kg != one.items["keys"].weight_kg
+
+
+def test_what_a_robot_has_that_does_not_get_on_is_brought_to_the_one_that_fetches_it() -> None:
+    made = goods()
+    wish(made, "mail", "a")
+    assert made.put_in("mail", anywhere, far_off) == ""
+    wish(made, "mail", "b", robot=1)
+    assert made.put_in("mail", anywhere, far_off) == (
+        "nobody at 'b' has 'mail': it is in a robot's basket"
+    )
+    assert made.put_in("mail", anywhere, lambda robot, other: (robot, other) == (1, 0)) == ""
+    assert made.load_kg(0) == 0.0
+    assert made.load_kg(1) == made.items["mail"].weight_kg

@@ -304,3 +304,36 @@ def test_a_part_alone_is_there_where_it_is_and_gone_where_it_is_not(
     assert watcher.presence("part", x, elsewhere) is Presence.GONE
     watcher.do(Act.STEAL, "part")
     assert watcher.presence("part", x, y) is Presence.GONE
+
+
+@pytest.mark.parametrize(("seed", "options"), [(57, NOISY), (20, TabletopOptions()), (3, NOISY)])
+def test_what_is_seen_beside_a_load_is_no_equal_that_stood_elsewhere(
+    seed: int, options: TabletopOptions
+) -> None:
+    rng = np.random.default_rng(seed)
+    size = tuple(np.round(rng.uniform((0.03, 0.03, 0.03), (0.08, 0.06, 0.07)), 3).tolist())
+    color, other_color = (
+        tuple(np.round(rng.uniform(0.05, most, 3), 2).tolist()) for most in (0.6, 0.9)
+    )
+    shares = rng.uniform(0.3, 0.7), rng.uniform(0.3, 0.7)
+    low = (size[0] * shares[0], size[1] * shares[1], rng.uniform(0.015, 0.04))
+    load = tuple(np.round(low, 3).tolist())
+    y, yaw, x = rng.uniform(-0.4, 0.0), rng.uniform(-1.5, 1.5), rng.uniform(0.42, 0.5)
+    stolen_yaw, third_yaw, turn = (rng.uniform(-m, m) for m in (1.5, 1.5, 0.5))
+    watcher = Watcher(
+        scene_of(
+            {
+                "carrier": at(x, y, yaw, size=size, color=color),
+                "stolen": at(0.6, 0.1, stolen_yaw, size=size, color=color),
+                "third": at(0.62, -0.1, third_yaw, size=size, color=color),
+                "load": at(0.45, 0.2, size=load, color=other_color),
+            }
+        ),
+        seed,
+        options,
+    )
+    watcher.seen()
+    assert watcher.presence("stolen", 0.6, 0.1, yaw=stolen_yaw) is Presence.THERE
+    watcher.do(Act.MOVE, "load", to=Pose(x=x, y=y, yaw=yaw + turn))
+    watcher.do(Act.STEAL, "stolen")
+    assert watcher.presence("stolen", 0.6, 0.1, yaw=stolen_yaw) is Presence.GONE

@@ -1,0 +1,91 @@
+"""What happens in a shift, as lines on a terminal."""
+
+from uuid import UUID
+
+import typer
+
+from mend.fleet.requests import STATUS, RequestStatus
+from mend.server.journal import events as ev
+from mend.server.transcript import Tone, Transcript
+
+_TOLD = (Tone.FAULT, Tone.SAID, Tone.ASKED, Tone.ANSWERED, Tone.DEED, Tone.SETBACK)
+"""Of what robots do in their legs only what is said, and why, is told."""
+
+
+class ShiftTranscript:
+    """Prints what is journaled, by the site's clock, and keeps what became of each request."""
+
+    def __init__(self) -> None:
+        self.open: set[str] = set()
+        self.ended: dict[str, str] = {}
+        self._transcripts: dict[UUID, tuple[Transcript, float]] = {}
+        self._now_s = 0.0
+
+    def booked(self, request: str) -> None:
+        """A request has been made, and is not over."""
+        if request not in self.ended:
+            self.open.add(request)
+
+    def refused(self, request: str, reason: str) -> None:
+        """A request cannot be met."""
+        self.say(f"'{request}' is refused: {reason}")
+        self.ended[request] = RequestStatus.REFUSED
+
+    def tell(self, event: ev.Event) -> None:
+        """Print what an event says to whoever follows the shift."""
+        match event:
+            case ev.RequestChanged():
+                self._now_s = event.at_s
+                self._tell_of_request(event)
+            case ev.PlanChanged():
+                self._now_s = event.at_s
+                others = f" ({', '.join(event.requests)})" if event.requests else ""
+                self.say(f"plan {event.number}: {event.reason}{others}")
+            case ev.FleetTold():
+                self._now_s = event.at_s
+                self.say(f"{event.finder or 'operator'} {event.told}")
+            case ev.RunStarted():
+                self._transcripts[event.run] = Transcript(), self._now_s
+                self.say(f"{event.robots[0]} begins to {event.tree_name.replace('_', ' ')}")
+            case _ if event.run in self._transcripts:
+                self._tell_of_run(event, *self._transcripts[event.run])
+
+    def sum_up(self) -> bool:
+        """Say what the shift came to; whether everything was done, or not wanted any more."""
+        counts = {
+            status: sum(each == status for each in self.ended.values())
+            for status in (
+                RequestStatus.DONE,
+                RequestStatus.CANCELLED,
+                RequestStatus.REFUSED,
+                RequestStatus.FAILED,
+            )
+        }
+        told = [f"{n} {status}" for status, n in counts.items() if n]
+        self.say(f"of {len(self.ended)} requests: {', '.join(told)}")
+        return not counts[RequestStatus.REFUSED] and not counts[RequestStatus.FAILED]
+
+    def say(self, text: str) -> None:
+        """Print a line, with the site's clock before it."""
+        typer.echo(f"{self._now_s:8.1f}  {text}")
+
+    # --- Within -------------------------------------------------------------------------------
+
+    def _tell_of_request(self, event: ev.RequestChanged) -> None:
+        by = f" by {event.robot}" if event.robot else ""
+        due = f", expected at {event.done_s:.0f} s" if event.done_s is not None else ""
+        why = f": {event.reason}" if event.reason else ""
+        self.say(f"'{event.request}' is {event.status.replace('_', ' ')}{by}{due}{why}")
+        if STATUS.is_last(RequestStatus(event.status)):
+            self.open.discard(event.request)
+            self.ended[event.request] = event.status
+        else:
+            # One that recurs is asked for again by itself.
+            self.open.add(event.request)
+
+    def _tell_of_run(self, event: ev.Event, transcript: Transcript, since_s: float) -> None:
+        for line in transcript.lines(event):
+            if line.tone in _TOLD:
+                self._now_s = max(self._now_s, since_s + line.time_s)
+                by = f"{line.speaker}: " if line.speaker else ""
+                self.say(f"  {by}{line.text}")

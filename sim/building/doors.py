@@ -1,0 +1,77 @@
+"""The doors of a building's world: which are shut, and who is near enough to open them."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mend.maps.building.building import Building, Door
+from mend.maps.building.clearance import apart_m
+from mend.sim.building.door import NOTICES_M, WorldDoor
+
+Matrix = NDArray[np.float64]
+Circle = tuple[float, float, float]
+
+
+class WorldDoors(Mapping[str, WorldDoor]):
+    """The doors of all floors, by `FLOOR/DOOR`."""
+
+    def __init__(self, building: Building, is_shut: Callable[[Door], bool]) -> None:
+        """`is_shut` says it of each once, in the order of the building's file."""
+        self._on: dict[str, list[WorldDoor]] = {
+            floor: [
+                WorldDoor(f"{floor}/{name}", plan, is_shut(plan))
+                for name, plan in each.doors.items()
+            ]
+            for floor, each in building.floors.items()
+        }
+        self._segments = {
+            floor: np.array([each.segment for each in doors], np.float64).reshape(-1, 4)
+            for floor, doors in self._on.items()
+        }
+        self._by_name = {each.name: each for doors in self._on.values() for each in doors}
+
+    def __getitem__(self, name: str) -> WorldDoor:
+        return self._by_name[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._by_name)
+
+    def __len__(self) -> int:
+        return len(self._by_name)
+
+    def let_pass(self, time_s: float, circles: Callable[[str], Sequence[Circle]]) -> None:
+        """One cycle: they open for who comes, and fall shut behind them."""
+        for floor, doors in self._on.items():
+            heed = [number for number, each in enumerate(doors) if each.heeds_who_comes]
+            if not heed:
+                continue
+            near_m = np.full(len(heed), math.inf)
+            if there := circles(floor):
+                points = np.array([(x, y) for x, y, _ in there])
+                near_m = apart_m(points, self._segments[floor][heed]).min(axis=0)
+            for number, away_m in zip(heed, near_m, strict=True):
+                doors[number].let_pass(time_s, somebody=bool(away_m < NOTICES_M))
+
+    def shut(self, floor: str) -> Matrix:
+        """The lines (n, 4) between the posts of those that are shut on a floor."""
+        if floor not in self._on:
+            return np.zeros((0, 4))
+        is_shut = [each.is_shut for each in self._on[floor]]
+        return np.asarray(self._segments[floor][is_shut])
+
+    def nearest_shut(
+        self, floor: str, x: float, y: float, time_s: float
+    ) -> tuple[float, WorldDoor] | None:
+        """The shut one that is nearest to a point, and may be opened now; how far, in metres."""
+        doors = self._on.get(floor, [])
+        may_open = [
+            (each.distance_m(x, y), number)
+            for number, each in enumerate(doors)
+            if each.is_shut and each.may_be_passed(time_s)
+        ]
+        if not may_open:
+            return None
+        away_m, number = min(may_open)
+        return away_m, doors[number]
