@@ -121,6 +121,8 @@ CHANGES: dict[Change, str] = {
     Change.LOADED: "",
     Change.UNLOADED: "",
     Change.CHARGED: "",
+    Change.TOLD: "",
+    Change.LED_ROUND: "",
 }
 
 
@@ -210,7 +212,9 @@ class Transcript:
         | ev.PlanChanged
         | ev.FleetTold
         | ev.LegBegun
-        | ev.LegEnded,
+        | ev.LegEnded
+        | ev.ErrandBegun
+        | ev.ErrandEnded,
     ) -> list[Line]:
         return []  # It belongs to no run.
 
@@ -337,6 +341,8 @@ class Transcript:
     def _(self, event: ev.HelpVerified) -> list[Line]:
         how = "feels" if event.help in _FELT else "sees"
         text = f"{how} {_promised(event)}{CHANGES[event.change]}"
+        if event.change is Change.LED_ROUND:
+            text = "sees that another way leads round"
         return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
     @lines.register

@@ -142,11 +142,13 @@ class BaseSubsystem:
         return layout.model_copy(update={"drives": True})
 
     def show(self, poses: Poses) -> Poses:
-        """Where the base frame is, and on which floor."""
+        """Where the base frame is, on which floor, and how sure it is of that."""
         here = self.effector.body.pose()
         half = here.yaw / 2
         base = (here.x, here.y, here.z, 0.0, 0.0, math.sin(half), math.cos(half))
-        return poses.model_copy(update={"base": base})
+        known = self.effector.whereabouts.covariance()
+        covariance = None if known is None else list(known)
+        return poses.model_copy(update={"base": base, "covariance": covariance})
 
     def note(self, looked: Looked) -> None:
         """What others located does not concern it."""

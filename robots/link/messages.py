@@ -636,14 +636,17 @@ class Poses(Message):
     """Where everything is that the hello's `shows` names; for display only, not durable.
 
     `base`: the robot's base frame, as it stands now, in that in which the robot began, but z from
-    the ground of the scene; all other poses are in the base frame. `tool`: the tool point (x the
-    approach direction, y the opening direction of the fingers).
+    the ground of the scene; all other poses are in the base frame. `covariance`: how sure it is of
+    that, as the variances and the covariance xx, xy, yy of its place along the axes of its map
+    (m2); None where it does not say. `tool`: the tool point (x the approach direction, y the
+    opening direction of the fingers).
     """
 
     type: Literal["poses"] = "poses"
     time: Time
     joints: list[Coordinate] = []
     base: PoseValues = IDENTITY
+    covariance: Annotated[list[Coordinate], Field(min_length=3, max_length=3)] | None = None
     tool: PoseValues
     opening_m: Coordinate
     objects: list[ShownPose] = []

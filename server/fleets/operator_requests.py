@@ -16,6 +16,14 @@ class OutOfService(BaseModel):
     reason: Annotated[str, Field(min_length=1, max_length=300, pattern=SEEN_CHARACTERS)]
 
 
+class GoThere(BaseModel):
+    """Where a robot that carries out no leg is to go."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    place: PlaceName
+
+
 class WayFound(BaseModel):
     """What somebody has found of the way `between` two neighbouring places, or of an `elevator`.
 

@@ -775,6 +775,30 @@ class LegEnded(LegEvent):
     barred_s: float | None = None
 
 
+class ErrandBegun(FleetEvent):
+    """A robot that carries out no leg is sent from `start` to a place: `author` wants it there.
+
+    Without an author it goes out of another robot's way.
+    """
+
+    type: Literal["errand_begun"] = "errand_begun"
+    robot: str
+    place: str
+    start: str
+    author: Author | None = None
+
+
+class ErrandEnded(FleetEvent):
+    """Whether it has come there, why where it has not, and the place that it is at then."""
+
+    type: Literal["errand_ended"] = "errand_ended"
+    robot: str
+    place: str
+    came: bool
+    reason: str | None
+    at: str
+
+
 AnyEvent = Annotated[
     RunStarted
     | NodeStarted
@@ -829,7 +853,9 @@ AnyEvent = Annotated[
     | PlanChanged
     | FleetTold
     | LegBegun
-    | LegEnded,
+    | LegEnded
+    | ErrandBegun
+    | ErrandEnded,
     Field(discriminator="type"),
 ]
 

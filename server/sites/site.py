@@ -9,6 +9,7 @@ from uuid import UUID, uuid4
 from mend.errors import ConflictError
 from mend.robots.link.messages import Avoid, ClosedWay, Held, Hello, Holding, Poses, Report
 from mend.server.journal.journal import Entry, Journal, Receipt
+from mend.server.poses.bases import SeenBase, in_scene
 from mend.server.robots.registry import RobotRegistry
 from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
 from mend.server.runtime.team import Neighbour
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+BASES_HZ = 2.0
+"""How often robots whose site is watched say where they are, by their clock."""
 MAX_RESTARTS = 20
 """So often a world is started again by itself without a report of any robot since."""
 
@@ -88,6 +91,25 @@ class Site:
     def whereabouts(self, robot: str) -> Point | None:
         """Where a robot was when a run's look last said so, in the scene's frame."""
         return self._seen_at.get(robot)
+
+    def show_bases(self) -> None:
+        """Have its robots say where they are, also those that no run has."""
+        for robot in self._frames:
+            self._registry.always_show_poses(robot, BASES_HZ)
+
+    @property
+    def shown_s(self) -> float:
+        """The world's clock, as far as reports and poses tell: for who watches it."""
+        poses = [self._registry.poses(robot) for robot in self._frames]
+        return max(self.world.time.latest_s, *(e.time for e in poses if e is not None), 0.0)
+
+    def base(self, robot: str) -> SeenBase | None:
+        """Where a robot says that it is, in the scene's frame; None until it has."""
+        poses = self._registry.poses(robot)
+        if poses is None:
+            return None
+        age_s = self.shown_s - poses.time
+        return SeenBase(in_scene(self._frames[robot], poses.base), age_s, poses.covariance)
 
     def odometer(self, robot: str) -> Odometer | None:
         """What a robot had driven when it last said so while no run had it, or at a run's end."""
@@ -220,7 +242,7 @@ class Site:
         self.changed()
 
     def robot_posed(self, robot: str, poses: Poses) -> None:
-        """Nobody watches a robot that no run has."""
+        """No run watches it; what it said last the registry knows."""
 
     async def robot_lost(self, robot: str, reason: str) -> None:
         """A robot's connection is gone and has not come back."""

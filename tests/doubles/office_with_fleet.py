@@ -16,6 +16,7 @@ async def open_office_with_fleet(
     *,
     robots: int = 1,
     floors: int = 1,
+    answers: Literal["live", "yes"] = "yes",
 ) -> UUID:
     """Open a site there; its robots know where they are, and no door is shut."""
     scene = scene_of(Building(random_building(7, floors, 6)), "office", robots)
@@ -27,7 +28,7 @@ async def open_office_with_fleet(
             speed=speed,
             seed=3,
             world_options={"localizer": "exact", "unmapped": 0.0, "shut_doors": 0.0},
-            fleet=FleetOptions(answers="yes"),
+            fleet=FleetOptions(answers=answers),
         )
     )
     return site.id

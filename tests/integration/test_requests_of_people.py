@@ -1,6 +1,7 @@
 """People of a building ask for things, and robots of a site do them, leg by leg."""
 
 import asyncio
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -195,6 +196,38 @@ async def test_requests_are_made_followed_changed_and_cancelled_over_rest(tmp_pa
         deeds = [each.what for each in (await client.deeds()).deeds]
     assert "asked for 'later'" in deeds
     assert "no longer wanted 'later'" in deeds
+
+
+@pytest.mark.slow(10)
+async def test_a_robot_is_sent_over_rest_and_is_where_it_was_sent(tmp_path: Path) -> None:
+    async with (
+        open_service(settings(tmp_path)) as service,
+        MendClient(service.url) as client,
+        asyncio.timeout(PATIENCE_S),
+    ):
+        site = await open_office_with_fleet(service, "max")
+        (known,) = (await client.fleet(site)).robots
+        with pytest.raises(RefusedError, match="no place 'F1/999'"):
+            await client.send_robot(site, known.robot, "F1/999")
+        while not (await client.fleet(site)).robots[0].connected:  # noqa: ASYNC110 - as it is
+            await asyncio.sleep(0.05)
+        await client.send_robot(site, known.robot, "F1/103")
+        with pytest.raises(RefusedError, match="is on its way to F1/103: wait"):
+            await client.close_site(site)
+
+        def came(events: list[ev.Event]) -> bool:
+            return any(isinstance(each, ev.ErrandEnded) for each in events)
+
+        *_, ended = [e for e in await events_until(service, came) if isinstance(e, ev.ErrandEnded)]
+        assert (ended.came, ended.at, ended.reason) == (True, "F1/103", None)
+        (there,) = (await client.fleet(site)).robots
+        assert there.at_work is None
+        assert there.pose is not None
+        place = (await service.fleets.fleet(site)).dispatcher.building.floors["F1"].places["103"]
+        assert math.hypot(there.pose.x - place.x, there.pose.y - place.y) < 0.5
+        await client.close_site(site)
+        deeds = [each.what for each in (await client.deeds()).deeds]
+    assert f"sent {known.robot} to F1/103" in deeds
 
 
 async def test_a_site_without_a_fleet_takes_no_requests(tmp_path: Path) -> None:

@@ -25,6 +25,8 @@ OF_NO_RUN = {
     "fleet_told",
     "leg_begun",
     "leg_ended",
+    "errand_begun",
+    "errand_ended",
     "plan_changed",
     "request_changed",
     "sign_in_failed",

@@ -211,6 +211,13 @@ def test_every_promise_is_looked_for_seen_or_not(help_: Help) -> None:
     assert misses == sees.replace(f"{verb}s", f"does not {verb}")
 
 
+@pytest.mark.parametrize("change", Change)
+def test_whatever_has_changed_is_told_and_a_way_round_is_no_clear_way(change: Change) -> None:
+    (sees,) = told(ev.HelpVerified(**DIALOGUE, help=Help.CLEAR_WAY, change=change))
+    assert sees.startswith("robot sees ")
+    assert ("the way clear" in sees) == (change is not Change.LED_ROUND)
+
+
 @pytest.mark.parametrize("resolution", Resolution)
 def test_every_resolution_is_named_and_explained(resolution: Resolution) -> None:
     (text,) = told(ev.Resolved(**DIALOGUE, resolution=resolution, helped=True))

@@ -24,6 +24,7 @@ from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.journal import events as ev
 from mend.server.journal.sqlite import SqliteJournal
+from mend.server.poses.bases import SeenBase
 from mend.server.runtime.clock import WorldTime
 from mend.server.runtime.views import RunStatus
 from mend.server.sites.odometer import Odometer
@@ -52,6 +53,8 @@ class FakeSite:
         self.gone: set[str] = set()
         self.standing: dict[str, tuple[float, float, float]] = {}
         self.runs: dict[str, UUID] = {}
+        self.bases: dict[str, SeenBase] = {}
+        self.shown_s = 0.0
         self.odometers: dict[str, Odometer] = {}
         self.kept_off: set[frozenset[str]] = set()
         self.stands_still = False
@@ -67,6 +70,12 @@ class FakeSite:
 
     def run_of(self, robot: str) -> UUID | None:
         return self.runs.get(robot)
+
+    def show_bases(self) -> None:
+        """They are as a test sets them."""
+
+    def base(self, robot: str) -> SeenBase | None:
+        return self.bases.get(robot)
 
     def is_connected(self, robot: str) -> bool:
         return robot not in self.gone
@@ -126,6 +135,8 @@ class FakeRuns:
         return _View(status, done, of.behavior)
 
     async def abort(self, run: UUID, author: object = None) -> Any:  # noqa: ARG002
+        if not await self.has_run(run):
+            raise NotFoundError(f"there is no run {run}")
         next(each for each in self.runs if each.id == run).ended.set_result(("aborted", False))
         await self.aborted.wait()
 
@@ -167,10 +178,16 @@ class Work:
                 await asyncio.sleep(0)
 
 
-def _fleet(site: Any, runs: FakeRuns, journal: SqliteJournal, of: Dispatcher) -> FleetAtWork:
+def _fleet(
+    site: Any,
+    runs: FakeRuns,
+    journal: SqliteJournal,
+    of: Dispatcher,
+    kept: FleetRecord | None = None,
+) -> FleetAtWork:
     places, options = PlaceNames(office(), SCENE), FleetOptions()
     now = datetime(2026, 1, 2, tzinfo=UTC)
-    return FleetAtWork(site, of, places, options, runs, journal, None, lambda: now, {})
+    return FleetAtWork(site, of, places, options, runs, journal, None, lambda: now, kept)
 
 
 @asynccontextmanager

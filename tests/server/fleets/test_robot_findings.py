@@ -49,7 +49,7 @@ class Work:
         )
         names, options = PlaceNames(building, SCENE), FleetOptions()
         self.fleet = FleetAtWork(
-            self.site, self.dispatcher, names, options, self.runs, self.journal, None, _now, {}
+            self.site, self.dispatcher, names, options, self.runs, self.journal, None, _now
         )
 
     async def __aenter__(self) -> "Work":

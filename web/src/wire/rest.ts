@@ -2,6 +2,7 @@
 import type {
   Answered,
   DialogueView,
+  Event,
   FleetView,
   Intervention,
   Layout,
@@ -21,6 +22,7 @@ import type {
   DocumentCheck,
   DocumentSummary,
   DocumentView,
+  WayFound,
   WorldView,
 } from "./types";
 import type { Told } from "./told";
@@ -165,7 +167,26 @@ const atSite = (site: string, name = "") =>
 export const requests = (site: string) => call<RequestView[]>("GET", atSite(site));
 export const makeRequest = (site: string, request: object) => call<RequestView>("POST", atSite(site), request);
 export const cancelRequest = (site: string, name: string) => call<void>("DELETE", atSite(site, name));
-export const fleet = (site: string) => call<FleetView>("GET", `/api/sites/${segment(site)}/fleet`);
+const ofFleet = (site: string, what = "") => `/api/sites/${segment(site)}/fleet${what}`;
+const ofRobot = (site: string, robot: string, what: string) => ofFleet(site, `/robots/${segment(robot)}/${what}`);
+export const takeRobotOut = (site: string, robot: string, reason: string) =>
+  call<void>("POST", ofRobot(site, robot, "out_of_service"), { reason });
+export const putRobotBack = (site: string, robot: string) => call<void>("POST", ofRobot(site, robot, "back_in_service"));
+export const sendRobot = (site: string, robot: string, place: string) =>
+  call<void>("POST", ofRobot(site, robot, "go"), { place });
+export const tellOfWay = (site: string, way: WayFound) => call<void>("POST", ofFleet(site, "/ways"), way);
+/** What became of a site after `after`, in order. */
+export async function siteEvents(id: string, after = 0): Promise<Event[]> {
+  const all: Event[] = [];
+  for (;;) {
+    const some = await call<Event[]>("GET", `/api/sites/${segment(id)}/events?after=${after}&limit=${EVENTS_AT_ONCE}`);
+    all.push(...some);
+    const last = some.at(-1);
+    if (last === undefined) return all;
+    after = last.seq;
+  }
+}
+export const fleet = (site: string) => call<FleetView>("GET", ofFleet(site));
 export const sites = () => call<SiteView[]>("GET", "/api/sites");
 export const worlds = () => call<WorldView[]>("GET", "/api/worlds");
 export const scenarios = () => call<ScenarioSummary[]>("GET", "/api/scenarios");
