@@ -69,6 +69,7 @@ class FloorWays:
             del points[1]
         if len(points) > 2 and self._is_wide(floor, points[-3], points[-1]):
             del points[-2]
+        points = self._round_cabin(floor, self._round_cabin(floor, points)[::-1])[::-1]
         return [self._frame.to_robot(*each) for each in points[1:]]
 
     def rides(self, here: BasePose, to: BasePose) -> Sequence[Ride]:
@@ -212,6 +213,25 @@ class FloorWays:
             for name, stop in self._cabins
             if name == floor
         )
+
+    def _round_cabin(self, floor: str, points: list[Point]) -> list[Point]:
+        """A way without the cabin through which it begins, from where one waits for that.
+
+        It leads to the lane at the farthest point from which there is room to do so.
+        """
+        if len(points) < 3 or not self._is_beside_cabin(floor, points[0], points[1]):
+            return points
+        start, stop, after = points[:3]
+        count = max(2, math.ceil(math.dist(stop, after) / _EVERY_M))
+        for x, y in np.linspace(after, stop, count)[:-1].tolist():
+            if self._is_wide(floor, start, (x, y)):
+                return [start, (x, y), *points[2:]]
+        return points
+
+    def _is_beside_cabin(self, floor: str, at: Point, stop: Point) -> bool:
+        """Whether a point is a cabin's stop, and another one outside that."""
+        stops = (each for name, each in self._cabins if name == floor)
+        return math.dist(at, stop) >= CABIN_M and any(math.dist(e, stop) < 1e-6 for e in stops)
 
     def _floor(self, pose: BasePose) -> str:
         floor = self._building.floor_at(pose.z)
