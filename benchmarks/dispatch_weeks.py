@@ -2,9 +2,11 @@
 
 The 140 tasks of Table 2 in Veloso et al., "CoBots: Robust Symbiotic Autonomous Mobile Service
 Robots" (IJCAI 2015), 66 of them over several floors, are asked for at random on ten weekdays from
-nine to five, in an office of several floors, and carried out in discrete events with drawn times
-(`fleet/dispatch/drawn_execution.py`). Printed is how the time of each kind of task is split as in
-its Figure 7; and how long people waited with and without places where things may change robots.
+nine to five, in an office of several floors, and carried out in discrete events
+(`fleet/dispatch/discrete_execution.py`): drives take what the drive-time model says
+(`drive_times.py`), elevators one robot at a time, and people drawn times. Printed is how the time
+of each kind of task is split as in its Figure 7; and how long people waited with and without places
+where things may change robots.
 
     python benchmarks/dispatch_weeks.py [--seeds 30] [--first 1] [--robots 4] [--quick]
 """
@@ -17,14 +19,15 @@ from random import Random
 from statistics import fmean, stdev
 from typing import Any
 
+from mend.fleet.dispatch.discrete_execution import DiscreteExecution, LegTimes
 from mend.fleet.dispatch.dispatcher import Dispatcher
-from mend.fleet.dispatch.drawn_execution import DrawnExecution, LegTimes
 from mend.fleet.dispatch.leg import LegOutcome
 from mend.fleet.dispatch.setting import FleetSetting, ServiceRobot
 from mend.fleet.requests import RequestStatus, request_of
 from mend.fleet.scheduling.alns.solve import prepare
 from mend.maps.building.building import Building, PlaceKind
 from mend.maps.building.random_building import random_building
+from mend.sim.building.trips import BuildingTrips
 
 TASKS = {
     "escort": (3, 2),
@@ -84,7 +87,7 @@ def two_weeks(seed: int, robots: int, floors: int, *, transfers: bool) -> Weeks:
     lifts = tuple(building.of_kind(PlaceKind.ELEVATOR)) if transfers else ()
     setting = FleetSetting(robots=fleet, transfer_places=lifts)
     dispatcher = Dispatcher(building, setting)
-    execution = DrawnExecution(dispatcher, LegTimes(), Random(seed + 1))
+    execution = DiscreteExecution(dispatcher, BuildingTrips(building), LegTimes(), Random(seed + 1))
     weeks, asked_s = Weeks(), {}
     for name, (at_s, kind, several) in enumerate(_tasks(chance)):
         execution.run_until(at_s)
@@ -123,7 +126,7 @@ def _request(
     return {"kind": kind, "name": name, **ways, **what}
 
 
-def _sum_up(weeks: Weeks, execution: DrawnExecution, asked_s: dict[str, float]) -> None:
+def _sum_up(weeks: Weeks, execution: DiscreteExecution, asked_s: dict[str, float]) -> None:
     ended_s: dict[str, float] = {}
     for record in execution.records:
         if record.outcome is not LegOutcome.DONE:
