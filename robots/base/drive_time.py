@@ -15,13 +15,16 @@ from mend.robots.base.motion.way_follower import FACES_GOAL_M
 
 Point = tuple[float, float]
 
+# Measured on drives that `benchmarks/drive_times.py --steps` printed, with --first 1 and 101.
 ROUNDS_FROM_M = 1.4
 """It leaves a leg so far before a bend, and is on the next one so far after it."""
 ROUNDS_BY_M = 0.58
 """No farther from the bend than this: with the former, a right angle."""
+CUTS_M = 1.6
+"""A leg that is shorter, between two bends, it cuts through the middle."""
 TURNS_BRAKING_RAD_S = 0.9
 """Who brakes brakes its turn as well, in every other cycle or so: it turns no faster then."""
-SWINGS_S = 0.2
+SWINGS_S = 0.25
 """Who sets out at a right angle to where it faces swings off its way while it turns."""
 _STRAIGHT_RAD = 1e-3
 
@@ -66,7 +69,24 @@ def length_m(way: Sequence[Point]) -> float:
 
 
 def _corners(way: Sequence[Point]) -> list[Point]:
-    """The points at which a way bends, with its ends."""
+    """The points at which a way bends, with its ends; of a short leg between two bends the middle.
+
+    It steers for what is so far ahead that it never follows such a leg.
+    """
+    points = _without_straight(way)
+    legs = [
+        (math.dist(a, b), number)
+        for number, (a, b) in enumerate(pairwise(points[1:-1]), 1)
+        if math.dist(a, b) < CUTS_M
+    ]
+    if not legs:
+        return points
+    _, number = min(legs)
+    (x0, y0), (x1, y1) = points[number : number + 2]
+    return _corners([*points[:number], ((x0 + x1) / 2.0, (y0 + y1) / 2.0), *points[number + 2 :]])
+
+
+def _without_straight(way: Sequence[Point]) -> list[Point]:
     points: list[Point] = []
     for each in way:
         if points and math.dist(points[-1], each) < 1e-6:
@@ -93,10 +113,11 @@ def _pieces(corners: Sequence[Point], limits: DriveLimits) -> list[_Piece]:
         radius_m = from_m / math.tan(bend_rad / 2.0)
         # Its velocity turns with it: on an arc the turn alone is what limits it.
         fastest_m_s = min(limits.speed_m_s, max(limits.turn_rad_s * radius_m, 0.05))
-        pieces.append(_Piece(legs_m[number - 1] - used_m - from_m, limits.speed_m_s))
+        straight_m = max(0.0, legs_m[number - 1] - used_m - from_m)
+        pieces.append(_Piece(straight_m, limits.speed_m_s))
         pieces.append(_Piece(radius_m * bend_rad, fastest_m_s))
         used_m = from_m
-    pieces.append(_Piece(legs_m[-1] - used_m, limits.speed_m_s))
+    pieces.append(_Piece(max(0.0, legs_m[-1] - used_m), limits.speed_m_s))
     return pieces
 
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mend.robots.base.body import DriveLimits
-from mend.robots.base.drive_time import drive_s, length_m
+from mend.robots.base.drive_time import ROUNDS_BY_M, ROUNDS_FROM_M, drive_s, length_m
 
 LIMITS = DriveLimits(1.0, 1.0, 1.5, 2.0, sideways=True)
 PERIOD_S = 0.05
@@ -29,18 +29,27 @@ def test_points_on_a_straight_way_change_nothing() -> None:
     assert many == pytest.approx(one)
 
 
-def test_a_bend_with_room_is_cut_and_one_without_costs_speed() -> None:
-    def lasts_s(leg_m: float) -> float:
-        way = [(0.0, 0.0), (leg_m, 0.0), (leg_m, leg_m)]
-        return drive_s(way, 0.0, math.pi / 2.0, LIMITS, PERIOD_S)
+def straight_s(metres: float) -> float:
+    return drive_s([(0.0, 0.0), (metres, 0.0)], 0.0, 0.0, LIMITS, PERIOD_S)
 
-    straight_s = drive_s([(0.0, 0.0), (20.0, 0.0)], 0.0, 0.0, LIMITS, PERIOD_S)
-    assert lasts_s(10.0) == pytest.approx(straight_s - 0.6, abs=0.1)
-    zigzag = [(0.0, 0.0), *((0.5 * (n // 2), 0.5 * ((n + 1) // 2)) for n in range(1, 40))]
-    plain_s = drive_s(
-        [(0.0, 0.0), (length_m(zigzag) / math.sqrt(2.0), 0.0)], 0.0, 0.0, LIMITS, PERIOD_S
+
+def test_a_right_angle_with_room_is_cut() -> None:
+    way = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)]
+    assert drive_s(way, 0.0, math.pi / 2.0, LIMITS, PERIOD_S) == pytest.approx(
+        straight_s(20.0 - (2.0 - math.pi / 2.0) * ROUNDS_FROM_M), abs=0.01
     )
-    assert drive_s(zigzag, 0.0, 0.0, LIMITS, PERIOD_S) > 1.5 * plain_s
+
+
+def test_steps_that_are_short_are_gone_past_straight() -> None:
+    steps = [(0.0, 0.0), *((0.5 * (n // 2), 0.5 * ((n + 1) // 2)) for n in range(1, 40))]
+    lasts_s = drive_s(steps, math.pi / 4.0, math.pi / 4.0, LIMITS, PERIOD_S)
+    assert lasts_s == pytest.approx(straight_s(math.dist(steps[0], steps[-1])), rel=0.05)
+
+
+def test_who_has_to_go_back_stops() -> None:
+    back = [(0.0, 0.0), (10.0, 0.0), (0.0, 0.01)]
+    lasts_s = drive_s(back, 0.0, math.pi, LIMITS, PERIOD_S)
+    assert lasts_s == pytest.approx(2.0 * straight_s(10.0 - ROUNDS_BY_M), abs=0.5)
 
 
 def test_who_has_to_turn_at_the_end_is_longer_at_it() -> None:
