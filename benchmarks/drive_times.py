@@ -26,6 +26,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 from building_bench import BuildingBench, made_up
 
 from mend.fleet.dispatch.cabins import Cabins
+from mend.fleet.dispatch.setting import FleetSetting, ServiceRobot
+from mend.fleet.scheduling.building_travel import travel_in
 from mend.maps.building.building import Building, Caller
 from mend.maps.building.building_file import read_building_file
 from mend.robots.link.messages import (
@@ -49,11 +51,15 @@ WITHIN = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """A drive as it was (seconds), and by the model; `steps` has both of each part."""
+    """A drive as it was (seconds), by the model, and as a dispatcher plans it.
+
+    `steps` has both of each part.
+    """
 
     what: str
     took_s: float
     model_s: float
+    planned_s: float
     metres: float
     rides: int
     steps: Sequence[tuple[str, float, float]]
@@ -83,6 +89,11 @@ class Timing:
             lambda body, _time, _world: self._heard.append((self._now_s, body)), lambda _: None
         )
         self._trips, self._cabins = BuildingTrips(self._building), Cabins(self._building)
+        graph, plain = (
+            self._building.graph,
+            FleetSetting(robots=(ServiceRobot(name="a", start="a"),)),
+        )
+        self._planned = travel_in(graph, plain.speed_m_s, starts_s=plain.starts_s)
         self._names = {
             scene_name(place.name): place.name
             for place in self._building.graph.places
@@ -158,7 +169,13 @@ class Timing:
         ]
         metres = sum(each.drives_m for each in trip)
         what = f"{self._name}: {here} to {goal}"
-        return Drive(what, marks[-1][0] - began_s, sum(model), metres, len(trip) - 1, steps)
+        took_s, planned_s = marks[-1][0] - began_s, self._planned_s(here, goal)
+        return Drive(what, took_s, sum(model), planned_s, metres, len(trip) - 1, steps)
+
+    def _planned_s(self, here: str, goal: str) -> float:
+        graph = self._building.graph
+        ends = graph.index(self._names[here]), graph.index(self._names[goal])
+        return float(self._planned.time_s[ends])
 
 
 def _called_by_robots(building: Building) -> Building:
@@ -222,6 +239,7 @@ def _sum_up(what: str, drives: Sequence[Drive]) -> None:
     off = np.array([each.off for each in drives])
     took_s = sum(each.took_s for each in drives)
     total = sum(each.model_s for each in drives) / took_s - 1.0
+    planned_s = np.array([each.planned_s - each.took_s for each in drives])
     late_s = np.array([each.took_s - each.model_s for each in drives])
     print(
         f"{what}: {len(drives)} drives, {sum(e.metres for e in drives):.0f} m, {took_s:.0f} s; off "
@@ -229,6 +247,10 @@ def _sum_up(what: str, drives: Sequence[Drive]) -> None:
         f"(p95), {100 * np.abs(off).max():.1f} % (most); {100 * (np.abs(off) < WITHIN).mean():.0f} "
         f"% within 5 %; the total by {100 * total:+.2f} %; later than the model by "
         f"{late_s.mean():.2f} s (mean), {np.percentile(late_s, 95):.2f} s (p95)"
+    )
+    print(
+        f"    dispatchers plan {planned_s.mean():+.1f} s (mean), off by "
+        f"{np.abs(planned_s).mean():.1f} s; the total by {100 * planned_s.sum() / took_s:+.1f} %"
     )
 
 

@@ -44,6 +44,7 @@ class FloorWays:
         self._needs_m = needs_m
         self._turn = turn
         self._walls: dict[str, Points] = {}
+        self._waiting: dict[tuple[str, Point], Sequence[Point]] = {}
         self._stops = _stops(building)
         self._cabins = [
             (floor, stop_of(building, elevator, floor))
@@ -155,7 +156,7 @@ class FloorWays:
         elevator = self._stops[begin]
         stop = stop_of(self._building, elevator, from_floor)
         stop_there = stop_of(self._building, elevator, to_floor)
-        waits = waiting_points(self._building.floors[from_floor], stop, self._needs_m)
+        waits = self._waits(from_floor, stop)
         if not waits:
             raise CommandError(f"there is no room to wait for {elevator} on {from_floor}")
         out = self._outside(to_floor, stop_there) if after is None else (after.x_m, after.y_m)
@@ -172,10 +173,17 @@ class FloorWays:
         )
 
     def _outside(self, floor: str, stop: Point) -> Point:
-        waits = waiting_points(self._building.floors[floor], stop, self._needs_m)
+        waits = self._waits(floor, stop)
         if not waits:
             raise CommandError(f"there is no room to get out on {floor}")
         return waits[self._turn % len(waits)]
+
+    def _waits(self, floor: str, stop: Point) -> Sequence[Point]:
+        """Where one may wait for a cabin, computed once."""
+        if (floor, stop) not in self._waiting:
+            found = waiting_points(self._building.floors[floor], stop, self._needs_m)
+            self._waiting[floor, stop] = found
+        return self._waiting[floor, stop]
 
     def _pose(self, floor: str, at: Point, facing: Point) -> BasePose:
         x, y = self._frame.to_robot(*at)
