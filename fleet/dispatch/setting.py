@@ -65,7 +65,8 @@ class FleetSetting(StrictModel):
     up, to brake and to turn: `benchmarks/drive_times.py` compares that with robots that drive.
     `handling_s`: what it takes to give or take something, or to tell a message; `transfer_s`: to
     leave an item for another robot at one of the `transfer_places`, or to take it from there.
-    `per_metre` and `per_second` weigh what is driven against how late everything is done.
+    `per_metre` and `per_second` weigh what is driven against how late everything is done: a metre
+    takes a robot a second, which counts as much as one that somebody waits.
     """
 
     robots: Annotated[tuple[ServiceRobot, ...], Field(min_length=1)]
@@ -75,5 +76,5 @@ class FleetSetting(StrictModel):
     transfer_places: tuple[PlaceName, ...] = ()
     transfer_s: Handling = 20.0
     per_metre: Weight = 1.0
-    per_second: Weight = 0.1
+    per_second: Weight = 1.0
     policy: Policy = Policy()
