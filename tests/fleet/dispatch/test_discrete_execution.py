@@ -5,11 +5,15 @@ from random import Random
 import pytest
 from dispatch_office import asked, dispatcher_for, office, visit
 
-from mend.fleet.dispatch.discrete_execution import DiscreteExecution, LegTimes
+from mend.fleet.dispatch.discrete_execution import DiscreteExecution, LegRecord, LegTimes
+from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import LegOutcome
-from mend.fleet.dispatch.setting import Policy
+from mend.fleet.dispatch.setting import FleetSetting, Policy, ServiceRobot
 from mend.fleet.dispatch.trip_times import LaneTrips
 from mend.fleet.requests import RequestStatus
+from mend.maps.building.building import Building
+from mend.maps.building.random_building import random_building
+from mend.maps.building.trip import Trip, TripRide, TripStage
 
 EXACT = LegTimes(
     start_share=0.0,
@@ -85,3 +89,47 @@ def test_leg_that_is_not_wanted_any_more_is_broken_off() -> None:
     execution.run_until(500.0)
     assert [record.outcome for record in execution.records] == [LegOutcome.WITHDRAWN]
     assert dispatcher.view("tea").status is RequestStatus.CANCELLED
+
+
+class RidingTrips:
+    """Every trip to the other floor passes a door and rides, ten seconds before and after."""
+
+    def trip(self, origin: str, destination: str) -> Trip:
+        begin, end = origin.split("/")[0], destination.split("/")[0]
+        if begin == end:
+            return [TripStage(10.0, 8.0)]
+        ride = TripRide("lift1", begin, end, gets_in_s=4.0, gets_out_s=1.0)
+        return [TripStage(10.0, 8.0, doors=1, ride=ride), TripStage(10.0, 8.0)]
+
+
+def upstairs(times: LegTimes, seed: int) -> list[LegRecord]:
+    """Two robots that set out at once, each to another room of the floor above."""
+    building = Building(random_building(1, 2, 6))
+    robots = tuple(ServiceRobot(name=f"r{n}", start=f"F1/10{n}") for n in (1, 2))
+    dispatcher = Dispatcher(building, FleetSetting(robots=robots))
+    for number in (1, 2):
+        wanted = visit(f"v{number}", f"F2/20{number}", latest_s=200.0, stay_s=300.0)
+        dispatcher.submit(wanted, 0.0)
+    execution = DiscreteExecution(dispatcher, RidingTrips(), times, Random(seed))
+    execution.run_until(1000.0)
+    return execution.records
+
+
+def test_an_elevator_takes_one_robot_at_a_time() -> None:
+    first, second = sorted(upstairs(EXACT, 1), key=lambda each: each.elevator_s)
+    # In, the door, a floor; then the door opens, shuts, and the cabin comes back.
+    assert first.elevator_s == pytest.approx(4.0 + 2.0 + 5.0)
+    assert second.elevator_s == pytest.approx(2.0 * first.elevator_s + 2.0 + 2.0 + 5.0)
+    assert [each.driving_s for each in (first, second)] == [20.0, 20.0]
+    assert [each.driven_m for each in (first, second)] == [16.0, 16.0]
+
+
+def test_a_door_that_is_shut_is_waited_for() -> None:
+    shut = EXACT.model_copy(update={"door_share": 1.0, "door_mean_s": 30.0})
+    assert all(each.blocked_s > 0.0 for each in upstairs(shut, 1))
+    assert all(each.blocked_s == 0.0 for each in upstairs(EXACT, 1))
+
+
+def test_the_same_seed_gives_the_same_events() -> None:
+    assert upstairs(LegTimes(), 5) == upstairs(LegTimes(), 5)
+    assert upstairs(LegTimes(), 5) != upstairs(LegTimes(), 6)
