@@ -157,7 +157,7 @@ class OneTaskAtATime:
             yield self._now_s + self._wait_s(times.start_share, times.start_mean_s)
             trip = self._trips.trip(self._names[robot.place], self._names[place])
             for stage in trip:
-                driving_s = stage.drives_s / robot.speed
+                driving_s = stage.drives_s / robot.speed + self._wait_s(1.0, times.detour_mean_s)
                 driving_s += self._wait_s(times.blocked_share, times.blocked_mean_s)
                 for _ in range(stage.doors):
                     driving_s += self._wait_s(times.door_share, times.door_mean_s)

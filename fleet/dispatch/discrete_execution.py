@@ -37,8 +37,9 @@ class LegTimes(StrictModel):
     At a share `start_share` of the beginnings a robot waits for help, `start_mean_s` in the mean;
     before each elevator that people call until somebody presses its button; at a share `door_share`
     of the doors that people open until somebody does; on a share `blocked_share` of the drives
-    because something is in its way; at the place until somebody comes. A leg fails at its end for a
-    share `fails`; what was to be given or taken is lost for a share `loses`.
+    because something is in its way; at the place until somebody comes. A drive takes `detour_mean_s`
+    longer as it leads round people and furniture. A leg fails at its end for a share `fails`; what
+    was to be given or taken is lost for a share `loses`.
     """
 
     start_share: Share = 0.1
@@ -48,6 +49,8 @@ class LegTimes(StrictModel):
     door_mean_s: Mean = 30.0
     blocked_share: Share = 0.1
     blocked_mean_s: Mean = 30.0
+    detour_mean_s: Mean = 0.7
+    """As `benchmarks/drive_times.py --first 2001 --people 10 --unmapped 0.2` measured it."""
     end_mean_s: Mean = 20.0
     fails: Share = 0.05
     loses: Share = 0.002
@@ -151,6 +154,7 @@ class DiscreteExecution:
             return "a leg that is over"
         stage, times, record = trip[0], self._times, self._open[leg.robot]
         driving_s = stage.drives_s / self.dispatcher.fleet.robots[leg.robot].robot.speed
+        driving_s += self._wait_s(1.0, times.detour_mean_s)
         blocked_s = self._wait_s(times.blocked_share, times.blocked_mean_s)
         for _ in range(stage.doors):
             blocked_s += self._wait_s(times.door_share, times.door_mean_s)

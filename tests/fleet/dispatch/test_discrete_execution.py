@@ -20,6 +20,7 @@ EXACT = LegTimes(
     elevator_mean_s=0.0,
     door_share=0.0,
     blocked_share=0.0,
+    detour_mean_s=0.0,
     end_mean_s=0.0,
     fails=0.0,
     loses=0.0,
