@@ -37,8 +37,8 @@ class LegTimes(StrictModel):
     At a share `start_share` of the beginnings a robot waits for help, `start_mean_s` in the mean;
     before each elevator that people call until somebody presses its button; at a share `door_share`
     of the doors that people open until somebody does; on a share `blocked_share` of the drives
-    because something is in its way; at the place until somebody comes. A drive takes `detour_mean_s`
-    longer as it leads round people and furniture. A leg fails at its end for a share `fails`; what
+    because something is in its way; at the place until somebody comes. A drive is `detour_mean_s`
+    longer, as it leads round people and furniture. A leg fails at its end for a share `fails`; what
     was to be given or taken is lost for a share `loses`.
     """
 
