@@ -76,6 +76,16 @@ class LegRecord:
     outcome: LegOutcome | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class _Drive:
+    """A robot drives from place to place of a floor, or stands where both are the same."""
+
+    origin: str
+    destination: str
+    since_s: float
+    lasts_s: float
+
+
 class DiscreteExecution:
     """Carries out what a dispatcher hands out; `records` has the legs that ended.
 
@@ -100,6 +110,7 @@ class DiscreteExecution:
         self._events: list[tuple[float, int, Callable[[], str]]] = []
         self._numbers = count()
         self._open: dict[str, LegRecord] = {}
+        self._drives: dict[str, _Drive] = {}
         self._waiting: dict[str, float] = {}
 
     def call_at(self, time_s: float, call: Callable[[], str]) -> None:
@@ -129,7 +140,9 @@ class DiscreteExecution:
         """Break off what is not wanted any more, begin what can begin."""
         for leg in self.dispatcher.legs_to_withdraw(self.now_s):
             record = self._open.pop(leg.robot, None)
-            self._end(record, leg, LegEnd(outcome=LegOutcome.WITHDRAWN, reason="not wanted"))
+            at = self._last_passed(leg.robot)
+            end = LegEnd(outcome=LegOutcome.WITHDRAWN, reason="not wanted", at=at)
+            self._end(record, leg, end)
         for robot in list(self._waiting):
             if robot in self._open:
                 self._arrive(self._open[robot].leg)
@@ -142,14 +155,16 @@ class DiscreteExecution:
         dispatcher.began(leg, self.now_s)
         robot, places = dispatcher.fleet.robots[leg.robot], dispatcher.building.graph.places
         assert robot.trip is not None, "it has set out"
-        trip = self._trips.trip(places[robot.trip.origin].name, places[robot.place].name)
+        origin = places[robot.trip.origin].name
+        trip = self._trips.trip(origin, places[robot.place].name)
+        self._drives[leg.robot] = _Drive(origin, origin, self.now_s, 0.0)
         record = LegRecord(leg, self.now_s, self._wait_s(times.start_share, times.start_mean_s))
         self._open[leg.robot] = record
-        self.call_at(self.now_s + record.start_s, lambda: self._drive(leg, trip))
+        self.call_at(self.now_s + record.start_s, lambda: self._drive(leg, trip, origin))
         self._watch(f"{leg.robot} sets out to {leg.action} '{leg.booking}'")
 
-    def _drive(self, leg: Leg, trip: Trip) -> str:
-        """The next stage of a trip."""
+    def _drive(self, leg: Leg, trip: Trip, origin: str) -> str:
+        """The next stage of a trip, from a place of its floor."""
         if not self._goes_on(leg):
             return "a leg that is over"
         stage, times, record = trip[0], self._times, self._open[leg.robot]
@@ -164,11 +179,14 @@ class DiscreteExecution:
             blocked_s=record.blocked_s + blocked_s,
             driven_m=record.driven_m + stage.drives_m,
         )
-        there_s = self.now_s + driving_s + blocked_s
+        lasts_s, there_s = driving_s + blocked_s, self.now_s + driving_s + blocked_s
         if stage.ride is None:
+            self._drives[leg.robot] = _Drive(origin, leg.place, self.now_s, lasts_s)
             self.call_at(there_s, lambda: self._arrive(leg))
             return f"{leg.robot} drives to {leg.place}"
         ride, plan = stage.ride, self.dispatcher.building.document.elevators[stage.ride.elevator]
+        stop = f"{ride.from_floor}/{plan.stops[ride.from_floor]}"
+        self._drives[leg.robot] = _Drive(origin, stop, self.now_s, lasts_s)
         pressed_s = 0.0
         if plan.called_by is Caller.PEOPLE:
             pressed_s = self._wait_s(1.0, times.elevator_mean_s)
@@ -180,9 +198,12 @@ class DiscreteExecution:
             return "a leg that is over"
         lasts, record = self._cabins.take(ride, self.now_s), self._open[leg.robot]
         lasts_s = lasts.waits_s + lasts.rides_s
+        stops = self.dispatcher.building.document.elevators[ride.elevator].stops
+        stop = f"{ride.to_floor}/{stops[ride.to_floor]}"
+        self._drives[leg.robot] = _Drive(stop, stop, self.now_s, 0.0)
         elevator_s = record.elevator_s + pressed_s + lasts_s
         self._open[leg.robot] = replace(record, elevator_s=elevator_s)
-        self.call_at(self.now_s + lasts_s, lambda: self._drive(leg, rest))
+        self.call_at(self.now_s + lasts_s, lambda: self._drive(leg, rest, stop))
         return f"{leg.robot} has called {ride.elevator}"
 
     def _arrive(self, leg: Leg) -> str:
@@ -221,6 +242,20 @@ class DiscreteExecution:
         self.dispatcher.ended(leg, end, self.now_s)
         if record is not None:
             self.records.append(replace(record, outcome=end.outcome))
+
+    def _last_passed(self, robot: str) -> str | None:
+        """The place at which a robot that breaks off its drive turns round; None: where it leads.
+
+        Who has called an elevator rides first.
+        """
+        drive, graph = self._drives.get(robot), self.dispatcher.building.graph
+        if drive is None or self.now_s >= drive.since_s + drive.lasts_s:
+            return None if drive is None else drive.destination
+        ends = graph.index(drive.origin), graph.index(drive.destination)
+        path = graph.quickest_path(*ends, self.dispatcher.setting.speed_m_s)
+        share = (self.now_s - drive.since_s) / drive.lasts_s
+        passed = [place for place, after_s in path if after_s <= share * path[-1][1]]
+        return graph.places[passed[-1]].name if passed else drive.destination
 
     def _goes_on(self, leg: Leg) -> bool:
         """Whether the leg is under way still: its robot may have failed meanwhile."""

@@ -92,6 +92,22 @@ def test_leg_that_is_not_wanted_any_more_is_broken_off() -> None:
     assert dispatcher.view("tea").status is RequestStatus.CANCELLED
 
 
+@pytest.mark.parametrize(("cancelled_s", "place"), [(5.0, "a"), (12.0, "b"), (25.0, "c")])
+def test_who_breaks_off_a_leg_is_where_it_has_come_to(cancelled_s: float, place: str) -> None:
+    dispatcher = dispatcher_for("a")
+    dispatcher.submit(visit(place="e"), 0.0)
+    execution = DiscreteExecution(dispatcher, TRIPS, EXACT, Random(1))
+
+    def cancel() -> str:
+        dispatcher.cancel("visit", execution.now_s)
+        return "cancelled"
+
+    execution.call_at(cancelled_s, cancel)
+    execution.run_until(cancelled_s + 0.5)
+    robot = dispatcher.fleet.robots["r0"]
+    assert dispatcher.building.graph.places[robot.place].name == f"f/{place}"
+
+
 class RidingTrips:
     """Every trip to the other floor passes a door and rides, ten seconds before and after."""
 
