@@ -49,7 +49,7 @@ class LegTimes(StrictModel):
     door_mean_s: Mean = 30.0
     blocked_share: Share = 0.1
     blocked_mean_s: Mean = 30.0
-    detour_mean_s: Mean = 0.7
+    detour_mean_s: Mean = 0.8
     """As `benchmarks/drive_times.py --first 2001 --people 10 --unmapped 0.2` measured it."""
     end_mean_s: Mean = 20.0
     fails: Share = 0.05
