@@ -2,6 +2,7 @@
 
 from typing import Protocol
 
+from mend.fleet.scheduling.building_travel import travel_in
 from mend.maps.building.trip import Trip, TripStage
 from mend.maps.navigation import NavigationGraph
 
@@ -15,16 +16,17 @@ class TripTimes(Protocol):
 
 
 class LaneTrips:
-    """Trips along lanes at one speed, of who neither speeds up nor turns: as plans have them.
+    """Trips as plans have them: along lanes at one speed, `starts_s` more for each.
 
     Rides last what the building's file says, and never wait.
     """
 
-    def __init__(self, graph: NavigationGraph, speed_m_s: float) -> None:
+    def __init__(self, graph: NavigationGraph, speed_m_s: float, starts_s: float = 0.0) -> None:
         self._graph = graph
-        self._metres, self._seconds = graph.shortest(speed_m_s)
+        self._travel = travel_in(graph, speed_m_s, starts_s=starts_s)
 
     def trip(self, origin: str, destination: str) -> Trip:
         """One stage, also across floors."""
         ends = self._graph.index(origin), self._graph.index(destination)
-        return [TripStage(float(self._seconds[ends]), float(self._metres[ends]))]
+        seconds, metres = self._travel.time_s[ends], self._travel.distance_m[ends]
+        return [TripStage(float(seconds), float(metres))]
