@@ -14,6 +14,8 @@ Point = tuple[float, float]
 
 CABIN_M = 0.6
 """So far is a cabin's wall from its middle, its stop, on all eight sides."""
+CABIN_DOOR_S = 2.0
+"""Its door takes so long to open, and to shut."""
 _SIDES = 8
 _CORNERS = np.array(
     [(math.cos(turn), math.sin(turn)) for turn in (np.arange(_SIDES) + 0.5) * math.tau / _SIDES]

@@ -23,7 +23,7 @@ from mend.robots.base.whereabouts import AlwaysKnown, Whereabouts
 from mend.robots.execution.effector import Effector
 from mend.robots.link.messages import Driven
 
-_SLOW_M_S, _SLOW_RAD_S = 0.05, 0.1
+SLOW_M_S, SLOW_RAD_S = 0.05, 0.1
 _SEES_OUT = 0.05
 """More of its beams lead out of an open cabin than fail to come back."""
 _BEHIND_M = 0.2
@@ -119,7 +119,7 @@ class Base(Effector[BaseBody]):
     def slow(self) -> bool:
         """Whether it stands, or is about to."""
         now = self.body.velocity()
-        return now.speed_m_s < _SLOW_M_S and abs(now.turn_rad_s) < _SLOW_RAD_S
+        return now.speed_m_s < SLOW_M_S and abs(now.turn_rad_s) < SLOW_RAD_S
 
     def driven(self) -> Driven:
         """What it has driven so far."""

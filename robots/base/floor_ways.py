@@ -49,6 +49,7 @@ class FloorWays:
         self._needs_m = needs_m
         self._turn = turn
         self._walls: dict[str, Points] = {}
+        self._waiting: dict[tuple[str, Point], Sequence[Point]] = {}
         self._stops = _stops(building)
         self._cabins = [
             (floor, stop_of(building, elevator, floor))
@@ -73,6 +74,7 @@ class FloorWays:
             del points[1]
         if len(points) > 2 and self._is_wide(floor, points[-3], points[-1]):
             del points[-2]
+        points = self._round_cabin(floor, self._round_cabin(floor, points)[::-1])[::-1]
         return [self._frame.to_robot(*each) for each in points[1:]]
 
     def leads_round(self, here: BasePose, to: BasePose, closed: Closed) -> bool:
@@ -179,7 +181,7 @@ class FloorWays:
         elevator = self._stops[begin]
         stop = stop_of(self._building, elevator, from_floor)
         stop_there = stop_of(self._building, elevator, to_floor)
-        waits = waiting_points(self._building.floors[from_floor], stop, self._needs_m)
+        waits = self._waits(from_floor, stop)
         if not waits:
             raise CommandError(f"there is no room to wait for {elevator} on {from_floor}")
         out = self._outside(to_floor, stop_there) if after is None else (after.x_m, after.y_m)
@@ -197,10 +199,17 @@ class FloorWays:
         )
 
     def _outside(self, floor: str, stop: Point) -> Point:
-        waits = waiting_points(self._building.floors[floor], stop, self._needs_m)
+        waits = self._waits(floor, stop)
         if not waits:
             raise CommandError(f"there is no room to get out on {floor}")
         return waits[self._turn % len(waits)]
+
+    def _waits(self, floor: str, stop: Point) -> Sequence[Point]:
+        """Where one may wait for a cabin, computed once."""
+        if (floor, stop) not in self._waiting:
+            found = waiting_points(self._building.floors[floor], stop, self._needs_m)
+            self._waiting[floor, stop] = found
+        return self._waiting[floor, stop]
 
     def _pose(self, floor: str, at: Point, facing: Point) -> BasePose:
         x, y = self._frame.to_robot(*at)
@@ -271,6 +280,25 @@ class FloorWays:
             for name, stop in self._cabins
             if name == floor
         )
+
+    def _round_cabin(self, floor: str, points: list[Point]) -> list[Point]:
+        """A way without the cabin through which it begins, from where one waits for that.
+
+        It leads to the lane at the farthest point from which there is room to do so.
+        """
+        if len(points) < 3 or not self._is_beside_cabin(floor, points[0], points[1]):
+            return points
+        start, stop, after = points[:3]
+        count = max(2, math.ceil(math.dist(stop, after) / _EVERY_M))
+        for x, y in np.linspace(after, stop, count)[:-1].tolist():
+            if self._is_wide(floor, start, (x, y)):
+                return [start, (x, y), *points[2:]]
+        return points
+
+    def _is_beside_cabin(self, floor: str, at: Point, stop: Point) -> bool:
+        """Whether a point is a cabin's stop, and another one outside that."""
+        stops = (each for name, each in self._cabins if name == floor)
+        return math.dist(at, stop) >= CABIN_M and any(math.dist(e, stop) < 1e-6 for e in stops)
 
     def _floor(self, pose: BasePose) -> str:
         floor = self._building.floor_at(pose.z)

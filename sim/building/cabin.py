@@ -5,10 +5,9 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from mend.maps.building.building import Caller, Elevator
+from mend.maps.building.cabin import CABIN_DOOR_S
 from mend.tasks.transitions import Transitions
 
-DOOR_S = 2.0
-"""Its door takes so long to open, and to shut."""
 HELD_S = 60.0
 """So long it stands open for who does not get in."""
 
@@ -135,7 +134,7 @@ class Cabin:
             self.withdraw(served.robot)
         if door_is_free:
             self.state = _CHANGES.require(self.state, CabinState.SHUT)
-            self.until_s = time_s + DOOR_S
+            self.until_s = time_s + CABIN_DOOR_S
 
     def _take_leave(self, inside: Sequence[int]) -> None:
         """Who is where they want to be wants nothing more; who is not waits for another button."""
@@ -161,4 +160,4 @@ class Cabin:
     def _open(self, time_s: float) -> None:
         self.state = _CHANGES.require(self.state, CabinState.OPEN)
         self.since_s = time_s
-        self.until_s = time_s + DOOR_S
+        self.until_s = time_s + CABIN_DOOR_S

@@ -7,6 +7,7 @@ from uuid import UUID
 
 import pytest
 
+from mend.dialogue.evidence import Change
 from mend.dialogue.script import CloseReason, Help
 from mend.server.access.roles import Role
 from mend.server.journal import events as ev

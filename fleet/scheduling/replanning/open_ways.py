@@ -13,15 +13,16 @@ from mend.maps.navigation import NavigationGraph, Way
 class OpenWays:
     """A navigation graph whose ways are closed and opened while robots drive."""
 
-    def __init__(self, graph: NavigationGraph, speed_m_s: float) -> None:
+    def __init__(self, graph: NavigationGraph, speed_m_s: float, starts_s: float = 0.0) -> None:
+        """`starts_s` comes on top of each trip."""
         self._whole = graph
-        self._speed_m_s = speed_m_s
+        self._speed_m_s, self._starts_s = speed_m_s, starts_s
         self._closed_until_s: dict[frozenset[str], float] = {}
         self._graph = graph
 
     def travel(self) -> Travel:
         """Travel between all places as the ways are now."""
-        return travel_in(self._graph, self._speed_m_s)
+        return travel_in(self._graph, self._speed_m_s, starts_s=self._starts_s)
 
     @property
     def closed_until_s(self) -> Mapping[frozenset[str], float]:

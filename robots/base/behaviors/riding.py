@@ -56,6 +56,8 @@ class Riding:
         """Stay until the cabin is open at the floor where the ride ends. Raises `Interruption`."""
         yield from self._await(step.ride, aboard=True, until=lambda: self.is_over(step.ride))
         self._other.took(step.ride)
+        # It may have asked once more between its arrival and the scan that shows it.
+        self._base.elevators.withdraw()
 
     def get_out(self, *, rides: bool) -> Routine[None]:
         """Leave the cabin in which it is, if any: nobody else could ride.

@@ -33,7 +33,7 @@ _GETS_ON_M = 0.3
 _THERE_M = 0.02
 _STILL_THERE_M = 0.04
 """At the goal it turns; only farther off than this it drives to it again."""
-_FACES_GOAL_M = 1.0
+FACES_GOAL_M = 1.0
 """Who goes sideways turns as it is to stand at the end once it is so near to it."""
 _STANDS_M_S = 0.01
 
@@ -155,6 +155,6 @@ class WayFollower:
             self._along_m = float(ahead_m[-1])
         self.left_m = route.cost_m + self.length_m - float(ahead_m[route.reached])
         towards = in_frame_of(np.array([route.carrot]), here)[0]
-        if off_m > _FACES_GOAL_M:
+        if off_m > FACES_GOAL_M:
             turn_rad = math.atan2(towards[1], towards[0])
         return Steering((float(towards[0]), float(towards[1])), turn_rad)

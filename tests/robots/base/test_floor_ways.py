@@ -147,6 +147,24 @@ def test_rides_lead_from_floor_to_floor_and_end_where_the_place_is(seed: int) ->
     assert not ways.rides(here, pose_of(frame, low.places["102"], low.height))
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_the_way_to_where_one_waits_and_from_there_leads_round_the_cabin(seed: int) -> None:
+    building = Building(random_building(seed, 2, 12))
+    ways = FloorWays(building, Frame(), 1.0, 0.3)
+    floors = building.floors
+    stop = floors["F1"].places["lift1"]
+    here = pose_of(Frame(), floors["F1"].places["101"], floors["F1"].height)
+    (ride,) = ways.rides(here, pose_of(Frame(), floors["F2"].places["202"], floors["F2"].height))
+    assert ride.wait_at is not None
+    for begin, end in ((here, ride.wait_at), (ride.wait_at, here)):
+        way = [(begin.x, begin.y), *ways.path(begin, end)]
+        for a, b in pairwise(way):
+            points = np.linspace(a, b, 50)
+            assert np.hypot(points[:, 0] - stop.x, points[:, 1] - stop.y).min() > 0.9 - 1e-6
+            leg = np.array([*a, *b])
+            assert not len(crossed_by(leg, floors["F1"].wall_segments))
+
+
 def test_who_is_in_a_cabin_does_not_wait_for_it() -> None:
     building = Building(random_building(2, 3, 6))
     ways = FloorWays(building, Frame(), 1.0, 0.3)

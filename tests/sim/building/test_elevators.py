@@ -67,6 +67,18 @@ def test_ride_elevator_ends_before_the_elevator_on_the_other_floor() -> None:
     assert bench.of(Finished)[-1].found_in_place
 
 
+def test_who_has_got_out_calls_the_elevator_no_more() -> None:
+    bench = BuildingBench(office(Caller.ROBOTS))
+    cabin = bench.world.elevators.cabins["lift1"]
+    for goal in ("F2-201", "F1-102", "F2-203", "F1-101", "F2-202"):
+        bench.reports.clear()
+        bench.go("robot1", goal)
+        bench.run()
+        assert bench.of(Finished)
+        assert not cabin.calls
+        assert cabin.floor == goal[:2]
+
+
 def test_an_elevator_that_people_call_is_asked_for() -> None:
     bench = BuildingBench(office(Caller.PEOPLE))
     bench.go("robot1", "F2-201")
