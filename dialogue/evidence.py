@@ -17,8 +17,8 @@ who has not promised or told it.
 
 A person has helped if a change was seen that only a person can have made: the object appeared,
 moved, or came between the fingers, the basket got heavier or lighter as was asked, current
-came, or what was in the way is gone. A promise alone is not help, nor is a look that sees no more
-than the first one did.
+came, who is escorted came near, or what was in the way is gone. A promise alone is not help, nor
+is a look that sees no more than the first one did.
 """
 
 import math
@@ -60,6 +60,8 @@ class Change(StrEnum):
     """Something was taken out of the basket that was to be taken out."""
     CHARGED = "charged"
     """The robot was plugged in."""
+    CAME = "came"
+    """Whom the robot escorts has come to it."""
 
     @property
     def by_a_person(self) -> bool:
@@ -71,6 +73,7 @@ _FELT = {
     Expectation.LOADED: Change.LOADED,
     Expectation.UNLOADED: Change.UNLOADED,
     Expectation.CHARGED: Change.CHARGED,
+    Expectation.ACCOMPANIED: Change.CAME,
 }
 
 

@@ -72,6 +72,7 @@ DEEDS: dict[Act, str] = {
     Act.PUT_IN: "puts {object} into the robot's basket",
     Act.TAKE_OUT: "takes {object} out of the robot's basket",
     Act.CHARGE: "plugs the robot in",
+    Act.SEND_PERSON: "tells who is to follow a robot to come",
 }
 
 PROMISES: dict[Help, str] = {
@@ -84,6 +85,7 @@ PROMISES: dict[Help, str] = {
     Help.PUT_IN: "something put into its basket",
     Help.TAKE_OUT: "something taken out of its basket",
     Help.CHARGE: "current",
+    Help.SEND_PERSON: "who is to follow it beside it",
 }
 
 _FELT = (Help.PUT_IN, Help.TAKE_OUT, Help.CHARGE)
@@ -119,6 +121,7 @@ CHANGES: dict[Change, str] = {
     Change.LOADED: "",
     Change.UNLOADED: "",
     Change.CHARGED: "",
+    Change.CAME: "",
 }
 
 

@@ -36,6 +36,8 @@ class Act(StrEnum):
     """Take out of a robot's basket what it hands over."""
     CHARGE = "charge"
     """Plug in robots that stand with little left in their batteries."""
+    SEND_PERSON = "send_person"
+    """Tell those who are to be escorted by robots that stand to come to them."""
 
 
 _WITHOUT_OBJECT = (
@@ -46,17 +48,19 @@ _WITHOUT_OBJECT = (
     Act.PUT_IN,
     Act.TAKE_OUT,
     Act.CHARGE,
+    Act.SEND_PERSON,
 )
 
 
 class Intervention(StrictModel):
     """One thing that a person does in a world.
 
-    `object` is required by every act but `block`, `release`, `cover`, `uncover` and `charge`, and
-    `put_in` and `take_out`, which are about any robot that asks for it where they name none;
-    `place` (a name of the scene) by `place`; `to` by `move`. A `release` with both `object` and
-    `place` frees that place as well, one with an `object` alone puts that aside. `manner` says how
-    `steal` takes the object: `vanish` at once, or `pull` it out of the gripper by force.
+    `object` is required by every act but `block`, `release`, `cover`, `uncover`, `charge` and
+    `send_person`, and `put_in` and `take_out`, which are about any robot that asks for it where
+    they name none; `place` (a name of the scene) by `place`; `to` by `move`. A `release` with both
+    `object` and `place` frees that place as well, one with an `object` alone puts that aside.
+    `manner` says how `steal` takes the object: `vanish` at once, or `pull` it out of the gripper by
+    force.
     """
 
     act: Annotated[Act, Field(strict=False)]

@@ -9,7 +9,7 @@ import numpy as np
 
 from mend.maps.building.building import Building, Caller
 from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of, waiting_points
-from mend.maps.building.clearance import clearance_m
+from mend.maps.building.clearance import clearance_m, distances_m
 from mend.maps.building.crossing import crossed_by
 from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 from mend.robots.base.body import BasePose
@@ -23,6 +23,8 @@ Point = tuple[float, float]
 _AROUND_M, _EVERY_M = 6.0, 0.15
 _ON_LANE_M = 0.6
 """Who is farther from a lane is not on it."""
+_ASIDE_M = 0.25
+"""So far from the middle of a cabin a robot stands with somebody beside it."""
 _THROUGH_CABIN_S = 1e6
 """No way leads through a cabin where there is any other."""
 
@@ -168,7 +170,16 @@ class FloorWays:
             there=self._pose(to_floor, stop_there, out),
             out_at=self._pose(to_floor, out, out),
             called=self._building.document.elevators[elevator].called_by is Caller.ROBOTS,
+            aside=self._aside(from_floor, stop, wait),
         )
+
+    def _aside(self, floor: str, stop: Point, wait: Point) -> BasePose:
+        """Beside the middle of a cabin, on the side where walls are farther."""
+        away_m, walls = math.dist(stop, wait), self._building.floors[floor].wall_segments
+        off = _ASIDE_M * (wait[1] - stop[1]) / away_m, _ASIDE_M * (stop[0] - wait[0]) / away_m
+        sides = [(stop[0] + sign * off[0], stop[1] + sign * off[1]) for sign in (1.0, -1.0)]
+        at = max(sides, key=lambda each: float(distances_m(np.array([each]), walls)[0]))
+        return self._pose(floor, at, (at[0] + wait[0] - stop[0], at[1] + wait[1] - stop[1]))
 
     def _outside(self, floor: str, stop: Point) -> Point:
         waits = waiting_points(self._building.floors[floor], stop, self._needs_m)

@@ -14,7 +14,7 @@ class Ride:
 
     One waits at `wait_at`, None for who is in the cabin already, gets in to `inside`, is `there`
     once it has arrived, and gets out to `out_at`. `called`: whether the robot itself can call it;
-    people must otherwise.
+    people must otherwise. `aside`: where in the cabin it leaves room for a person.
     """
 
     elevator: str
@@ -25,6 +25,7 @@ class Ride:
     there: BasePose
     out_at: BasePose
     called: bool
+    aside: BasePose | None = None
 
 
 class Ways(Protocol):

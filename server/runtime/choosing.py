@@ -26,14 +26,15 @@ class Choice:
 def suitabilities(
     state: RunState, proxy: RobotProxy, leaves: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """How well a robot can do each leaf; 0 where it cannot, or another has what it carries."""
+    """How well a robot can do each leaf; 0 where it cannot, or another takes that along."""
     nodes = state.tree.nodes
     by_code = np.array([proxy.suitability(each) for each in nodes.behaviors], dtype=np.float64)
     suitable = by_code[nodes.behavior_codes[leaves]]
+    robot = proxy.robot
     if state.carriers:
         for number in np.flatnonzero(suitable).tolist():
-            item = state.tree.leaf_definition(int(leaves[number])).item
-            if item is not None and state.carriers.get(item, proxy.robot) != proxy.robot:
+            entrusted = state.tree.leaf_definition(int(leaves[number])).entrusted
+            if entrusted is not None and state.carriers.get(entrusted, robot) != robot:
                 suitable[number] = 0.0
     team = proxy.team
     if team is not None and team.shares:

@@ -39,6 +39,8 @@ class BuildingBench:
         forgetful: float = 0.0,
         battery_wh: float = 0.0,
         people: int = 0,
+        no_shows: float = 0.0,
+        dawdling: float = 0.0,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
         setup = WorldSetup(
@@ -55,6 +57,8 @@ class BuildingBench:
                 "forgetful": forgetful,
                 "battery_wh": battery_wh,
                 "people": people,
+                "no_shows": no_shows,
+                "dawdling": dawdling,
             },
         )
         self.group: SharedWorld = BUILDINGS.create_agents(setup)

@@ -8,6 +8,7 @@ from typing import TypeAlias
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.basket import Basket, NoBasket
 from mend.robots.base.body import BasePose
+from mend.robots.base.companion import Companion, NoCompanion
 from mend.robots.base.ways import Ride, Ways
 from mend.robots.execution.behavior import Behavior
 from mend.robots.execution.command_error import CommandError
@@ -19,7 +20,7 @@ class Drive:
     """One step: drive to a pose, at `speed` in (0, 1] of the base's best.
 
     `wait_s` passes there before the next step. `phase` says what the step is for: monitors watch
-    phases.
+    phases. `leads`: the person who follows; it stands while they do not keep up.
     """
 
     name: str
@@ -27,22 +28,31 @@ class Drive:
     speed: float = 1.0
     wait_s: float = 0.0
     phase: Phase = Phase.TRAVEL
+    leads: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class GetIn:
-    """One step: wait before an elevator until it is open for this robot, and get in."""
+    """One step: wait before an elevator until it is open for this robot, and get in.
+
+    `leads`: who is to have room beside it.
+    """
 
     name: str
     ride: Ride
+    leads: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class RideUntilThere:
-    """One step: stay in an elevator until it is open at the floor where the ride ends."""
+    """One step: stay in an elevator until it is open at the floor where the ride ends.
+
+    `leads`: who has to be in it, too, before it leaves.
+    """
 
     name: str
     ride: Ride
+    leads: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +87,25 @@ class Charging:
     name: str
 
 
-StandingStep: TypeAlias = AwaitItem | AwaitTaken | Tell | Charging
+@dataclass(frozen=True, slots=True)
+class Meet:
+    """One step: wait for a person at a place, until they are seen there."""
+
+    name: str
+    person: str
+    place: str
+
+
+@dataclass(frozen=True, slots=True)
+class Arrive:
+    """One step: wait at a place until the person who was led there is seen there, too."""
+
+    name: str
+    person: str
+    place: str
+
+
+StandingStep: TypeAlias = AwaitItem | AwaitTaken | Tell | Charging | Meet | Arrive
 """What is done where the drive before has led."""
 BaseStep: TypeAlias = Drive | GetIn | RideUntilThere | StandingStep
 UNHEARD = "nobody_answers"
@@ -89,7 +117,8 @@ class BaseSituation:
     """What a behavior may know when it lays out its steps.
 
     `here` is where the base is; `places` are the poses of all that the task's scene names so, and
-    `target` is that of the behavior's `place`, None where it has none. `basket`: its own.
+    `target` is that of the behavior's `place`, None where it has none. `basket`, `companion`: its
+    own.
     """
 
     here: BasePose
@@ -97,6 +126,7 @@ class BaseSituation:
     target: BasePose | None
     ways: Ways
     basket: Basket = field(default_factory=NoBasket)
+    companion: Companion = field(default_factory=NoCompanion)
 
 
 class BaseBehavior(Behavior):
@@ -107,19 +137,33 @@ class BaseBehavior(Behavior):
         """Lay out all steps. Raises `CommandError` where the parameters name what is not there."""
 
 
-def steps_of_ride(ride: Ride) -> list[BaseStep]:
-    """Go to the elevator, get in, and stay in it until it is there."""
+LEADS = 0.6
+"""So much of its best speed a base drives that somebody on foot follows."""
+
+
+def steps_of_ride(ride: Ride, leads: str | None = None) -> list[BaseStep]:
+    """Go to the elevator, get in, and stay in it until it is there; with whom it `leads`."""
     name = ride.elevator
     steps: list[BaseStep] = []
     if ride.wait_at is not None:
-        steps += [Drive(f"go to {name}", ride.wait_at), GetIn(f"get into {name}", ride)]
-    return [*steps, RideUntilThere(f"ride to {ride.to_floor}", ride)]
+        steps += [
+            _drive(f"go to {name}", ride.wait_at, leads),
+            GetIn(f"get into {name}", ride, leads),
+        ]
+    return [*steps, RideUntilThere(f"ride to {ride.to_floor}", ride, leads)]
 
 
-def steps_to(place: str, situation: BaseSituation) -> list[BaseStep]:
-    """Ride to the floor of a place and drive to it. Raises `CommandError` where there is none."""
+def steps_to(place: str, situation: BaseSituation, leads: str | None = None) -> list[BaseStep]:
+    """Ride to the floor of a place and drive to it, with whom it `leads`.
+
+    Raises `CommandError` where there is no such place.
+    """
     if situation.target is None:
         raise CommandError(f"it is not known where '{place}' is")
     rides = situation.ways.rides(situation.here, situation.target)
-    steps = [step for ride in rides for step in steps_of_ride(ride)]
-    return [*steps, Drive(f"go to {place}", situation.target)]
+    steps = [step for ride in rides for step in steps_of_ride(ride, leads)]
+    return [*steps, _drive(f"go to {place}", situation.target, leads)]
+
+
+def _drive(name: str, to: BasePose, leads: str | None) -> Drive:
+    return Drive(name, to, speed=1.0 if leads is None else LEADS, leads=leads)

@@ -6,12 +6,14 @@ from mend.robots.base.base import Base
 from mend.robots.base.battery import ENOUGH, LOW
 from mend.robots.base.behaviors.behavior import (
     UNHEARD,
+    Arrive,
     AwaitItem,
     AwaitTaken,
     BaseStep,
     Charging,
     Drive,
     GetIn,
+    Meet,
     RideUntilThere,
     StandingStep,
     Tell,
@@ -19,8 +21,9 @@ from mend.robots.base.behaviors.behavior import (
 from mend.robots.base.behaviors.driving import NEAR_M, Driving
 from mend.robots.base.behaviors.handling import Handling
 from mend.robots.base.behaviors.progress import BaseProgress
-from mend.robots.base.behaviors.riding import Riding
+from mend.robots.base.behaviors.riding import Riding, place_in
 from mend.robots.base.behaviors.watch import BaseWatch
+from mend.robots.base.companion import CAUGHT_UP_M
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import Execution
 from mend.robots.execution.execution_state import ExecutionState
@@ -62,7 +65,7 @@ class BaseExecution(Execution[BaseProgress]):
                     return self._base.gets_to(drive.to)
                 case GetIn() as step:
                     is_open = self._base.elevators.is_open_for(step.ride)
-                    return is_open and self._base.gets_to(step.ride.inside)
+                    return is_open and self._base.gets_to(place_in(step))
                 case RideUntilThere() as step:
                     return self._riding.is_over(step.ride)
         except CommandError:
@@ -79,6 +82,15 @@ class BaseExecution(Execution[BaseProgress]):
                 return load.taken(self._base.basket.memory.items.get(item, 0.0))
             case _:
                 return load.as_remembered()
+
+    def accompanied(self) -> bool:
+        """Whether it sees whom it escorts, as near as the step under way, or the next, needs."""
+        left = self._progress.steps[self._done :]
+        match left[0] if left else None:
+            case RideUntilThere(ride=ride):
+                return self._riding.is_led_in(ride)
+            case _:
+                return self._base.company.is_within(CAUGHT_UP_M)
 
     def resume(self, told: Resume) -> Routine[None]:
         """Go on; who asked whether a message was heard is told so by that alone."""
@@ -97,13 +109,16 @@ class BaseExecution(Execution[BaseProgress]):
     def end(self) -> None:
         self._base.elevators.withdraw()
         self._base.basket.withdraw()
+        self._base.companion.leave()
         super().end()
 
     def _walk(self, *, resumed: bool) -> Routine[bool]:
         progress = self._progress
         progress.step, progress.blocked_since_s = BEFORE_FIRST_STEP, None
-        progress.wait = progress.standing = None
+        progress.wait = progress.standing = progress.alone_since_s = None
+        self._base.company.start_anew()
         self._forget_other_offers()
+        self._invite()
         self._watch.check()
         yield from self._find_out()
         yield from self._fill_up()
@@ -130,6 +145,15 @@ class BaseExecution(Execution[BaseProgress]):
         before = steps[self._done - 1] if self._done else None
         stays = self._done == len(steps) or isinstance(steps[self._done], StandingStep)
         return stays and isinstance(before, Drive) and not self._driving.is_at(before.to)
+
+    def _invite(self) -> None:
+        """Have those hear of it whom it is to meet, or to lead."""
+        for step in self._progress.steps[self._done :]:
+            match step:
+                case Meet(person=person, place=place):
+                    self._base.companion.expect(person, place)
+                case Arrive(person=person):
+                    self._base.companion.lead(person)
 
     def _forget_other_offers(self) -> None:
         """What was offered where it stood is offered no more by who sets about something else."""
@@ -181,6 +205,10 @@ class BaseExecution(Execution[BaseProgress]):
                 yield from self._handling.tell(step)
             case Charging():
                 yield from self._handling.charge(step)
+            case Meet():
+                yield from self._handling.meet(step)
+            case Arrive():
+                yield from self._handling.arrive(step)
 
     def _react(self, interruption: Interruption) -> Routine[None]:
         self._asked_whether_heard = str(interruption) == UNHEARD

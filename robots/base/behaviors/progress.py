@@ -4,11 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mend.robots.base.behaviors.behavior import (
+    Arrive,
     AwaitItem,
     AwaitTaken,
     BaseStep,
     Charging,
     Drive,
+    Meet,
+    RideUntilThere,
     StandingStep,
     Tell,
 )
@@ -47,7 +50,7 @@ class BaseProgress(Progress):
     `blocked_since_s`: since when it has stood before something; None while it drives. `stalled_s`:
     how long it has come no nearer, although it may move. `no_way`: why it knows no way. `wait`: for
     what elevator it waits, and `standing` for what people. `heard`: somebody has said that the
-    message was heard.
+    message was heard. `alone_since_s`: since when it has waited for whom it leads.
     """
 
     steps: Sequence[BaseStep] = ()
@@ -57,6 +60,7 @@ class BaseProgress(Progress):
     wait: Wait | None = None
     standing: StandingWait | None = None
     heard: bool = False
+    alone_since_s: float | None = None
 
     @property
     def taken(self) -> BaseStep | None:
@@ -83,5 +87,11 @@ class BaseProgress(Progress):
                 return Phase.TELL
             case Charging():
                 return Phase.CHARGE
+            case RideUntilThere():
+                return Phase.RIDE
+            case Meet():
+                return Phase.MEET
+            case Arrive():
+                return Phase.ARRIVE
             case _:
                 return Phase.TRAVEL
