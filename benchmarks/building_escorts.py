@@ -11,7 +11,8 @@ failure. An escort has arrived if robot and person really stand within 2 m of ea
 floor, within 3 m of the destination, when the robot says that it is done; `said, and not so` counts
 the others. `led` counts the seconds in which a robot led somebody, and `ahead` those of them in
 which it drove although the person had been more than 3.3 m away, or out of sight, for longer than
-1.5 s (standing takes a second; not while it leaves an elevator). The exit code is 1 where a robot touched anything, or anybody.
+1.5 s (standing takes a second; not while it leaves an elevator). The exit code is 1 where a robot
+touched anything, or anybody.
 """
 
 # ruff: noqa: T201
@@ -126,7 +127,10 @@ class Escorts:
                 self._away_s[name] = 0.0
                 continue
             self.counts["s led"] += SLICE_S  # type: ignore[assignment]
-            if self._leaves_cabin(name, robot.at.x, robot.at.y, robot.at.floor) or (self._is_beside(number, FAR_M) and world.companions[number].sighting() is not None):
+            beside = self._is_beside(number, FAR_M)
+            seen = world.companions[number].sighting() is not None
+            leaves = self._leaves_cabin(name, robot.at.x, robot.at.y, robot.at.floor)
+            if leaves or (beside and seen):
                 self._away_s[name] = 0.0
             else:
                 self._away_s[name] += SLICE_S
