@@ -96,10 +96,11 @@ class Escorts:
         for robot in self._bench.scene.robots:
             self._send_on(robot)
         while self._bench.group.time_s() < seconds:
-            self._bench.group.advance(SLICE_S)
+            # While all robots wait for an answer, the world's clock stands still.
+            goes_on = self._bench.group.advance(SLICE_S)
             self._measure()
             self._hear()
-            self._answer()
+            self._answer(at_once=not goes_on)
         self.counts["under way at the end"] = len(self._errands)
 
     def _send_on(self, robot: str) -> None:
@@ -198,8 +199,8 @@ class Escorts:
         self._bench.send(robot, Interrupt(retreat=True))
         self._send_on(robot)
 
-    def _answer(self) -> None:
-        now_s = self._bench.group.time_s()
+    def _answer(self, *, at_once: bool) -> None:
+        now_s = math.inf if at_once else self._bench.group.time_s()
         for robot in [each for each, at_s in self._asked_s.items() if at_s <= now_s]:
             del self._asked_s[robot]
             issue = self._held[robot].issue

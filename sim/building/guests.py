@@ -142,7 +142,7 @@ class Guests:
     def expect(self, robot: int, person: str, place: str) -> None:
         """A robot comes to meet somebody, who hears of it."""
         known = self.of_robots.get(robot)
-        if known is not None and known.person == person and place == known.place:
+        if known is not None and self._waits(known, person, place):
             known.left_s = None
             return
         absent, late, late_s, speed = self._rng.random(4)
@@ -152,6 +152,12 @@ class Guests:
         elif late < _LATE:
             guest.late_s = _between(_LATE_S, late_s)
         self.of_robots[robot] = guest
+
+    def _waits(self, guest: Guest, person: str, place: str) -> bool:
+        """Whether they wait there for a robot already, and were not led away since."""
+        if (guest.person, guest.place) != (person, place):
+            return False
+        return guest.where is None or _is_at(guest.at, self._places[place])
 
     def lead(self, robot: int, person: str) -> None:
         """A robot has somebody follow whom it has met."""
@@ -202,7 +208,7 @@ class Guests:
         place = self._places.get(guest.place)
         if place is None or guest.late_s is None:
             return
-        if guest.comes_s is None and (guest.late_s == 0.0 or _is_at(robot, place)):
+        if guest.comes_s is None and (guest.late_s == 0.0 or _is_at(robot.at, place)):
             guest.comes_s = time_s + guest.late_s
         if guest.comes_s is not None and time_s >= guest.comes_s:
             guest.where = around.room_beside(place)
@@ -335,8 +341,7 @@ def _has_gone(guest: Guest, time_s: float) -> bool:
     return guest.left_s is not None and time_s - guest.left_s > _LEAVES_S
 
 
-def _is_at(robot: BuildingRobot, place: FloorPose) -> bool:
-    at = robot.at
+def _is_at(at: FloorPose, place: FloorPose) -> bool:
     return at.floor == place.floor and math.dist((at.x, at.y), (place.x, place.y)) < _AT_PLACE_M
 
 

@@ -194,6 +194,18 @@ def test_some_come_late_and_are_met_all_the_same() -> None:
     assert late
 
 
+def test_who_was_led_away_is_met_where_they_are_asked_for_the_next_time() -> None:
+    bench = bench_of(dawdling=0.0)
+    for place in ("F1-104", "F1-103"):
+        bench.reports.clear()
+        meet(bench)
+        lead(bench, place)
+        bench.run()
+        assert len(bench.of(Finished)) == 2
+        assert is_at(bench, place)
+        assert away_m(bench) <= CAUGHT_UP_M + 0.2
+
+
 def test_nobody_is_told_to_come_where_no_robot_waits() -> None:
     assert bench_of().world.intervene(SEND) == "no robot that stands waits for anybody"
 

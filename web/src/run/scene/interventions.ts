@@ -75,6 +75,7 @@ const DONE: Readonly<Record<Intervention["act"], (object: string) => string>> = 
   put_in: () => "Something is put into the robot’s basket.",
   take_out: () => "Something is taken out of the robot’s basket.",
   charge: () => "The robot is plugged in.",
+  send_person: () => "Whom the robot escorts is told to come.",
 };
 
 /** One sentence on what was done. */
