@@ -15,9 +15,14 @@ Point = tuple[float, float]
 CABIN_M = 0.6
 """So far is a cabin's wall from its middle, its stop, on all eight sides."""
 _SIDES = 8
-_CORNERS = np.array(
-    [(math.cos(turn), math.sin(turn)) for turn in (np.arange(_SIDES) + 0.5) * math.tau / _SIDES]
-) * (CABIN_M / math.cos(math.pi / _SIDES))
+CORNER_M = CABIN_M / math.cos(math.pi / _SIDES)
+"""And so far its corners are."""
+_CORNERS = (
+    np.array(
+        [(math.cos(turn), math.sin(turn)) for turn in (np.arange(_SIDES) + 0.5) * math.tau / _SIDES]
+    )
+    * CORNER_M
+)
 _WAITS_M = (1.2, 1.6, 2.0, 2.5, 3.0)
 """Who waits stands so far from the stop, the first that there is room for."""
 _DIRECTIONS = 24

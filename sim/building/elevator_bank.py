@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mend.documents.strict_model import StrictModel
 from mend.maps.building.building import Building
-from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of
+from mend.maps.building.cabin import CABIN_M, CORNER_M, cabin_walls, stop_of
 from mend.robots.base.ways import Ride
 from mend.sim.building.building_robot import BuildingRobot
 from mend.sim.building.cabin import Cabin, CabinState, Call
@@ -98,7 +98,7 @@ class ElevatorBank:
     def is_in_a_cabin(self, floor: str, x: float, y: float, radius_m: float) -> bool:
         """Whether something round there would be in the room of any cabin."""
         return any(
-            floor in stops and math.dist(stops[floor], (x, y)) < CABIN_M + radius_m
+            floor in stops and math.dist(stops[floor], (x, y)) < CORNER_M + radius_m
             for stops in self._stops.values()
         )
 
@@ -154,7 +154,7 @@ class ElevatorBank:
         """Whether nobody is in the room of a cabin but who stands in it."""
         x, y = self._stops[cabin.name][cabin.floor]
         within = sum(
-            math.dist((x, y), each[:2]) < CABIN_M + each[2] for each in circles(cabin.floor)
+            math.dist((x, y), each[:2]) < CORNER_M + each[2] for each in circles(cabin.floor)
         )
         return within <= len(riders) and not any(each.moving for each in riders)
 
