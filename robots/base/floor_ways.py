@@ -9,7 +9,7 @@ import numpy as np
 
 from mend.maps.building.building import Building, Caller
 from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of, waiting_points
-from mend.maps.building.clearance import clearance_m, distances_m
+from mend.maps.building.clearance import clearance_m
 from mend.maps.building.crossing import crossed_by
 from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 from mend.robots.base.body import BasePose
@@ -173,12 +173,13 @@ class FloorWays:
             aside=self._aside(from_floor, stop, wait),
         )
 
-    def _aside(self, floor: str, stop: Point, wait: Point) -> BasePose:
-        """Beside the middle of a cabin, on the side where walls are farther."""
+    def _aside(self, floor: str, stop: Point, wait: Point) -> BasePose | None:
+        """Beside the middle of a cabin; None where walls leave no room on both sides."""
         away_m, walls = math.dist(stop, wait), self._building.floors[floor].wall_segments
         off = _ASIDE_M * (wait[1] - stop[1]) / away_m, _ASIDE_M * (stop[0] - wait[0]) / away_m
-        sides = [(stop[0] + sign * off[0], stop[1] + sign * off[1]) for sign in (1.0, -1.0)]
-        at = max(sides, key=lambda each: float(distances_m(np.array([each]), walls)[0]))
+        at, other = ((stop[0] + n * off[0], stop[1] + n * off[1]) for n in (1.0, -1.0))
+        if clearance_m(at, other, walls) < self._needs_m:
+            return None
         return self._pose(floor, at, (at[0] + wait[0] - stop[0], at[1] + wait[1] - stop[1]))
 
     def _outside(self, floor: str, stop: Point) -> Point:

@@ -14,7 +14,8 @@ class Ride:
 
     One waits at `wait_at`, None for who is in the cabin already, gets in to `inside`, is `there`
     once it has arrived, and gets out to `out_at`. `called`: whether the robot itself can call it;
-    people must otherwise. `aside`: where in the cabin it leaves room for a person.
+    people must otherwise. `aside`: where in the cabin it leaves room for a person,
+    None where there is none for both.
     """
 
     elevator: str

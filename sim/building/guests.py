@@ -35,6 +35,8 @@ _STILL_M_S = 0.08
 _LEAVES_S = 600.0
 """Whom nobody leads any more goes their own way after so long."""
 _FROM_STOP_M = 0.33
+_ASIDE_M = 0.15
+"""In a cabin whose middle a robot leaves by less there is no room for anybody else."""
 _NEAR_STOP_M = 1.6
 _IN_CABIN_KEEP_M = 0.02
 
@@ -386,6 +388,8 @@ def _near(guest: Guest, around: Surroundings, beside: BuildingRobot | None) -> M
 
 
 def _gets_in(guest: Guest, robot: BuildingRobot, stop: Point) -> bool:
-    """Whether who follows is near the cabin in which the robot stands."""
+    """Whether who follows is near the cabin in which the robot stands, and has room there."""
+    if math.dist(stop, (robot.at.x, robot.at.y)) < _ASIDE_M:
+        return False
     near = math.dist(stop, (guest.at.x, guest.at.y)) < _NEAR_STOP_M
     return guest.led and near and robot.at.floor == guest.at.floor and not robot.moving

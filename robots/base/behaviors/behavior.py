@@ -35,7 +35,7 @@ class Drive:
 class GetIn:
     """One step: wait before an elevator until it is open for this robot, and get in.
 
-    `leads`: who is to have room beside it.
+    `leads`: who is to have room beside it, if there is any.
     """
 
     name: str
@@ -47,7 +47,7 @@ class GetIn:
 class RideUntilThere:
     """One step: stay in an elevator until it is open at the floor where the ride ends.
 
-    `leads`: who has to be in it, too, before it leaves.
+    `leads`: who has to be in it, too, before it leaves, if there is room for both.
     """
 
     name: str

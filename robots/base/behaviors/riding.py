@@ -22,6 +22,11 @@ def place_in(step: GetIn) -> BasePose:
     return ride.inside if step.leads is None or ride.aside is None else ride.aside
 
 
+def _has_company(step: GetIn | RideUntilThere) -> bool:
+    """Whether somebody is to ride with the base."""
+    return step.leads is not None and step.ride.aside is not None
+
+
 class Riding:
     """Takes the steps of rides, and lets the monitors watch."""
 
@@ -42,7 +47,7 @@ class Riding:
                 ride,
                 aboard=False,
                 until=lambda: elevators.is_open_for(ride),
-                stay_open=step.leads is not None,
+                stay_open=_has_company(step),
             )
             yield from self._driving.take(
                 Drive(step.name, place_in(step)), lambda: not elevators.is_open_for(ride)
@@ -51,9 +56,9 @@ class Riding:
     def ride(self, step: RideUntilThere) -> Routine[None]:
         """Stay until the cabin is open at the floor where the ride ends. Raises `Interruption`.
 
-        With whom it leads it leaves once they are in it, too.
+        With whom it leads it leaves once they are in it, too, where there is room for both.
         """
-        if step.leads is not None and not self.is_over(step.ride):
+        if _has_company(step) and not self.is_over(step.ride):
             yield from self._let_in(step.ride)
         yield from self._await(step.ride, aboard=True, until=lambda: self.is_over(step.ride))
 

@@ -55,6 +55,7 @@ class WayFollower:
         self._way, self.goal = Polyline(way), goal
         self._along_m = 0.0
         self._before: BasePose | None = None
+        self._unspent_m = 0.0
         self._at_end = False
         self._kept = NO_WAY
         self.length_m = self._way.length_m
@@ -96,12 +97,16 @@ class WayFollower:
     def _advance(self, here: BasePose) -> None:
         """Find how far on the way it has come: no farther than it can have moved.
 
-        Who goes back to get round something still wants to get as far as before.
+        Who cuts a corner is nearest to what is before that for a while, and then far beyond. Who
+        goes back to get round something still wants to get as far as before.
         """
         moved_m = 0.0 if self._before is None else here.distance_m(self._before)
         self._before = here
-        most_m = min(self._along_m + 2.0 * moved_m + 1e-3, self.length_m)
-        self._along_m = self._way.nearest_m(here.x, here.y, self._along_m, most_m)
+        self._unspent_m = min(self._unspent_m + 2.0 * moved_m, _SEEN_AHEAD_M)
+        most_m = min(self._along_m + self._unspent_m + 1e-3, self.length_m)
+        along_m = self._way.nearest_m(here.x, here.y, self._along_m, most_m)
+        self._unspent_m = max(0.0, self._unspent_m - (along_m - self._along_m))
+        self._along_m = along_m
 
     def _samples_m(self) -> Points:
         """How far along the way the points are that it may get to next."""

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from mend.maps.building.building import Building, BuildingDocument, Caller
 from mend.robots.base.companion import CAUGHT_UP_M, FALLS_BEHIND_M, GLIMPSE_S
+from mend.robots.base.floor_ways import FloorWays
 from mend.robots.link.messages import Finished, Interrupt, IssueDetected, Look, Looked, Resume
 from mend.sim.building.bystander import RADIUS_M
 from mend.sim.building.cabin import CabinState
@@ -142,6 +143,26 @@ def test_who_is_left_on_another_floor_is_met_near_the_elevator_there() -> None:
     bench.run()
     assert len(bench.of(Finished)) == 2
     assert away_m(bench) <= CAUGHT_UP_M + 0.2
+
+
+def test_who_has_no_room_in_the_cabin_rides_alone_and_is_met_at_its_door(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(FloorWays, "_aside", lambda *_: None)
+    bench = bench_of(floors=2, dawdling=0.0)
+    meet(bench)
+    lead(bench, "F2-204")
+    issue = bench.run_until(IssueDetected)
+    robot = bench.world.robots[0]
+    assert (issue.issue, robot.at.floor, guest_of(bench).at.floor) == ("fell_behind", "F2", "F1")
+    assert bench.world.intervene(SEND) == ""
+    bench.send(ROBOT, Look(expect="accompanied", within_s=60.0))
+    assert bench.run_until(Looked).fulfilled
+    bench.send(ROBOT, Resume(execution=issue.execution))
+    bench.run()
+    assert len(bench.of(Finished)) == 2
+    assert away_m(bench) <= CAUGHT_UP_M + 0.2
+    assert bench.world.touches == 0
 
 
 def test_who_dawdles_is_waited_for_and_asked_for() -> None:
