@@ -86,6 +86,7 @@ _SEEN_NOW = {
     Expectation.LOADED: "I feel that my basket is heavier now.",
     Expectation.UNLOADED: "I feel that my basket is lighter now.",
     Expectation.CHARGED: "I feel current now.",
+    Expectation.ACCOMPANIED: "I see {person} beside me now.",
     Expectation.IN_GRIPPER: "I have the {object} between my fingers.",
 }
 

@@ -19,8 +19,8 @@ Another way that leads round puts it right, also where the first look finds it; 
 
 A person has helped if a change was seen that only a person can have made: the object appeared,
 moved, or came between the fingers, the basket got heavier or lighter as was asked, current
-came, or what was in the way is gone. A promise alone is not help, nor is a look that sees no more
-than the first one did.
+came, who is escorted came near, or what was in the way is gone. A promise alone is not help, nor
+is a look that sees no more than the first one did.
 """
 
 import math
@@ -64,6 +64,8 @@ class Change(StrEnum):
     """The robot was plugged in."""
     LED_ROUND = "led_round"
     """What is in the way still is, but another way leads round."""
+    CAME = "came"
+    """Whom the robot escorts has come to it."""
 
     @property
     def by_a_person(self) -> bool:
@@ -75,6 +77,7 @@ _FELT = {
     Expectation.LOADED: Change.LOADED,
     Expectation.UNLOADED: Change.UNLOADED,
     Expectation.CHARGED: Change.CHARGED,
+    Expectation.ACCOMPANIED: Change.CAME,
 }
 
 

@@ -36,6 +36,8 @@ class Help(StrEnum):
     """Take something out of the robot's basket."""
     CHARGE = "charge"
     """Plug the robot in."""
+    SEND_PERSON = "send_person"
+    """Have whom the robot escorts come to it."""
 
 
 class Felt(StrEnum):
@@ -144,6 +146,8 @@ class Expectation(StrEnum):
     """The robot feels that its basket is lighter by what was to be taken out."""
     CHARGED = "charged"
     """The robot feels that its battery is being charged."""
+    ACCOMPANIED = "accompanied"
+    """The robot sees near it whom it escorts."""
 
 
 EXPECTED: Mapping[Help, Expectation] = {
@@ -156,6 +160,7 @@ EXPECTED: Mapping[Help, Expectation] = {
     Help.PUT_IN: Expectation.LOADED,
     Help.TAKE_OUT: Expectation.UNLOADED,
     Help.CHARGE: Expectation.CHARGED,
+    Help.SEND_PERSON: Expectation.ACCOMPANIED,
 }
 """What a robot has to see before a promise counts as kept."""
 

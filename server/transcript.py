@@ -74,6 +74,7 @@ DEEDS: dict[Act, str] = {
     Act.CHARGE: "plugs the robot in",
     Act.BAR: "bars the way between {between}",
     Act.CLEAR: "clears the way between {between}",
+    Act.SEND_PERSON: "tells who is to follow a robot to come",
 }
 
 PROMISES: dict[Help, str] = {
@@ -86,6 +87,7 @@ PROMISES: dict[Help, str] = {
     Help.PUT_IN: "something put into its basket",
     Help.TAKE_OUT: "something taken out of its basket",
     Help.CHARGE: "current",
+    Help.SEND_PERSON: "who is to follow it beside it",
 }
 
 _FELT = (Help.PUT_IN, Help.TAKE_OUT, Help.CHARGE)
@@ -123,6 +125,7 @@ CHANGES: dict[Change, str] = {
     Change.CHARGED: "",
     Change.TOLD: "",
     Change.LED_ROUND: "",
+    Change.CAME: "",
 }
 
 

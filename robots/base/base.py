@@ -11,6 +11,7 @@ from mend.robots.base.basket import Basket, LoadSense, NoBasket
 from mend.robots.base.battery import Battery, MainsPower
 from mend.robots.base.body import BaseBody, BasePose
 from mend.robots.base.closed_ways import Closed, ClosedWays
+from mend.robots.base.companion import Companion, Company, NoCompanion
 from mend.robots.base.driven_way import DrivenWay
 from mend.robots.base.elevators import Elevators, NoElevators
 from mend.robots.base.jumps import Jumps
@@ -53,6 +54,7 @@ class Base(Effector[BaseBody]):
         whereabouts: Whereabouts | None = None,
         basket: Basket | None = None,
         battery: Battery | None = None,
+        companion: Companion | None = None,
     ) -> None:
         """`ways` says which points to pass to a goal, `whereabouts` if it may be lost."""
         warm_up()
@@ -62,6 +64,8 @@ class Base(Effector[BaseBody]):
         self.basket = basket or NoBasket()
         self.battery: Battery = battery or MainsPower()
         self.load = LoadSense(self.basket)
+        self.companion: Companion = companion or NoCompanion()
+        self.company = Company(self.companion, body.time_s)
         self.whereabouts: Whereabouts = whereabouts or AlwaysKnown()
         self.closed = ClosedWays()
         self.at_rest = True
@@ -83,15 +87,15 @@ class Base(Effector[BaseBody]):
         """Whether it now believes to be elsewhere than where its way led it; once a cycle."""
         return self._jumps.note(self.body.pose(), self.body.odometry())
 
-    def drive_on(self) -> None:
+    def drive_on(self, *, waits: bool = False) -> None:
         """Choose how to move in the next control cycle; once a cycle, after `start`.
 
-        Who is lost stands still until it knows where it is.
+        Who is lost stands still until it knows where it is, and who `waits` until it does not.
         """
         assert self._following is not None, "it was started"
         here, now = self.body.pose(), self.body.velocity()
         seen = self._look_around(here)
-        if self.whereabouts.is_lost:
+        if self.whereabouts.is_lost or waits:
             self.body.stop()
             return
         self.body.move(self._following.choose(here, now, seen, self.pace))

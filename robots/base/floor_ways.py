@@ -24,6 +24,8 @@ Point = tuple[float, float]
 _AROUND_M, _EVERY_M = 6.0, 0.15
 _ON_LANE_M = 0.6
 """Who is farther from a lane is not on it."""
+_ASIDE_M = 0.25
+"""So far from the middle of a cabin a robot stands with somebody beside it."""
 _CLOSED_S = 1e5
 """No way leads by what is closed where there is any other."""
 _THROUGH_CABIN_S = 1e10
@@ -196,7 +198,17 @@ class FloorWays:
             out_at=self._pose(to_floor, out, out),
             called=self._building.document.elevators[elevator].called_by is Caller.ROBOTS,
             between=(begin, end),
+            aside=self._aside(from_floor, stop, wait),
         )
+
+    def _aside(self, floor: str, stop: Point, wait: Point) -> BasePose | None:
+        """Beside the middle of a cabin; None where walls leave no room on both sides."""
+        away_m, walls = math.dist(stop, wait), self._building.floors[floor].wall_segments
+        off = _ASIDE_M * (wait[1] - stop[1]) / away_m, _ASIDE_M * (stop[0] - wait[0]) / away_m
+        at, other = ((stop[0] + n * off[0], stop[1] + n * off[1]) for n in (1.0, -1.0))
+        if clearance_m(at, other, walls) < self._needs_m:
+            return None
+        return self._pose(floor, at, (at[0] + wait[0] - stop[0], at[1] + wait[1] - stop[1]))
 
     def _outside(self, floor: str, stop: Point) -> Point:
         waits = self._waits(floor, stop)

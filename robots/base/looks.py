@@ -1,4 +1,4 @@
-"""The looks of a base: where it is, whether its way is free, and what its basket weighs."""
+"""The looks of a base: where it is, if its way is free, what its basket weighs, who is near."""
 
 from collections.abc import Callable
 
@@ -44,6 +44,8 @@ def look_as_told(
         return _feel(base, command, look.within_s, held)
     if look.expect == "charged":
         return _until(base, command, look.within_s, lambda: base.battery.charging)
+    if look.expect == "accompanied":
+        return _until(base, command, look.within_s, lambda: _is_accompanied(held))
     if look.expect not in (None, "way_clear"):
         raise CommandError(f"a base that drives cannot look for '{look.expect}'")
 
@@ -95,6 +97,10 @@ def _until(base: Base, command: str, within_s: float, so: Callable[[], bool]) ->
             return answer(base, command, fulfilled=False)
         yield from base.wait(min(_PERIOD_S, left_s))
     return answer(base, command, fulfilled=True)
+
+
+def _is_accompanied(held: AnyExecution | None) -> bool:
+    return isinstance(held, BaseExecution) and held.accompanied()
 
 
 def _look_there(base: Base, command: str, guess: str) -> Routine[Looked]:

@@ -15,6 +15,7 @@ from mend.robots.base.behaviors.behavior import (
 )
 from mend.robots.base.behaviors.execution import BaseExecution
 from mend.robots.base.body import BaseBody, BasePose
+from mend.robots.base.companion import Companion
 from mend.robots.base.elevators import Elevators
 from mend.robots.base.looks import answer, look_as_told
 from mend.robots.base.monitors.monitor import BaseView
@@ -58,12 +59,15 @@ class BaseSubsystem:
         whereabouts: Whereabouts | None = None,
         basket: Basket | None = None,
         battery: Battery | None = None,
+        companion: Companion | None = None,
     ) -> None:
         """It takes those of bases. Without `ways` it goes straight to each goal.
 
-        Without `whereabouts` it always believes its body's pose, without `basket` it has none.
+        Without `whereabouts` it always believes its body's pose, without `basket` it has none, and
+        without `companion` it escorts nobody.
         """
-        self.effector = Base(body, ways or StraightWays(), elevators, whereabouts, basket, battery)
+        ways = ways or StraightWays()
+        self.effector = Base(body, ways, elevators, whereabouts, basket, battery, companion)
         self._places = {name: _pose(each) for name, each in catalogue.places.items()}
         self._behaviors = of_kind(behaviors, BaseBehavior)  # type: ignore[type-abstract]
         self._monitors = for_view(monitors.values(), BaseView)
@@ -97,6 +101,7 @@ class BaseSubsystem:
             ways=self.effector.ways,
             basket=self.effector.basket,
             closed=self.effector.closed.at(self.effector.body.time_s()),
+            companion=self.effector.companion,
         )
         steps = behavior.steps(parameters, situation)
         if not self.effector.whereabouts.is_lost:

@@ -15,7 +15,8 @@ class Ride:
 
     One waits at `wait_at`, None for who is in the cabin already, gets in to `inside`, is `there`
     once it has arrived, and gets out to `out_at`. `called`: whether the robot itself can call it;
-    people must otherwise. `between`: where it stops then, by the names of the map.
+    people must otherwise. `between`: where it stops then, by the names of the map. `aside`: where
+    in the cabin it leaves room for a person, None where there is none for both.
     """
 
     elevator: str
@@ -27,6 +28,7 @@ class Ride:
     out_at: BasePose
     called: bool
     between: tuple[str, str] = ("", "")
+    aside: BasePose | None = None
 
 
 class Ways(Protocol):

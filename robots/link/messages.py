@@ -156,6 +156,9 @@ BASKET = "basket"
 GAUGE = "gauge"
 """And where the gauge of a battery told it."""
 
+TRACKER = "tracker"
+"""And where what follows a person by eye, or by a badge, saw them or did not."""
+
 LISTENING = "listening"
 """And where it is that nobody has said anything."""
 
@@ -457,6 +460,7 @@ Expected = Literal[
     "loaded",
     "unloaded",
     "charged",
+    "accompanied",
 ]
 
 
@@ -469,7 +473,7 @@ class Look(Message):
     close once it is seen between the fingers); `way_clear`: nothing is in the arm's way;
     `view_clear`: the head camera shows the table; `located`: it knows where it is; `loaded` and
     `unloaded`: its basket weighs what the step that waits needs, or what it weighed before;
-    `charged`: current comes into its battery. A
+    `charged`: current comes into its battery; `accompanied`: it sees near it whom it escorts. A
     person has told `guess`, one of a detection's `guesses`: then what it sees has to agree with it.
     `rate`: simulated worlds let their clock run so fast while they look again and again; None is
     the run's own speed. `finished`: the results to judge by what the last pictures show.

@@ -13,7 +13,7 @@ from mend.documents.validation import describe_mistake
 from mend.errors import WrongInputError
 from mend.fleet.dispatch.booking import AnyRequest
 from mend.fleet.dispatch.leg import Leg
-from mend.fleet.requests import DeliverMessage, LegAction, Transport
+from mend.fleet.requests import DeliverMessage, Escort, LegAction, Transport
 from mend.robots.execution.behavior import Behavior
 from mend.server.runtime.requests import RunRequest
 from mend.server.sites.requests import FleetOptions
@@ -23,6 +23,8 @@ from mend.tasks.scenario import Person
 GO_TO = "go_to"
 BEHAVIORS = {
     LegAction.DELIVER_MESSAGE: "deliver_message",
+    LegAction.MEET: "meet_person",
+    LegAction.ESCORT: "escort",
     LegAction.COLLECT: "collect_item",
     LegAction.TAKE: "collect_item",
     LegAction.HAND_OVER: "hand_over_item",
@@ -115,6 +117,8 @@ def _parameters(request: AnyRequest, booking: str) -> dict[str, Any]:
     match request:
         case DeliverMessage(message=message):
             return {"message": message}
+        case Escort(person=person):
+            return {"person": person}
         case Transport(what=what):
             return {"item": item_of(what, booking)}
         case _:

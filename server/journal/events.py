@@ -144,7 +144,7 @@ class IssueRaised(NodeEvent):
 
     `last_seen`: where the last look before it saw the object (base frame, metres). `outlook`: which
     attempt this is, of how many, and what follows if it fails. `item`: what the leaf carries for
-    people, and `message`: what it tells them, if it does.
+    people, `message`: what it tells them, and `person`: whom it escorts, if it does.
     """
 
     type: Literal["issue_raised"] = "issue_raised"
@@ -161,6 +161,7 @@ class IssueRaised(NodeEvent):
     outlook: Outlook | None = None
     item: str | None = None
     message: str | None = None
+    person: str | None = None
 
 
 class ClipPicture(EventModel):

@@ -34,6 +34,7 @@ _WITHOUT_OBJECT = (
     Expectation.LOADED,
     Expectation.UNLOADED,
     Expectation.CHARGED,
+    Expectation.ACCOMPANIED,
 )
 """What a look may be asked to wait for that is about no object."""
 

@@ -129,6 +129,7 @@ class ReportEvents:
             place=leaf.place,
             item=leaf.item,
             message=leaf.message,
+            person=leaf.person,
             execution=execution.id,
             step=body.step,
             interrupts=body.interrupts,

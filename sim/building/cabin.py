@@ -34,13 +34,15 @@ _CHANGES = Transitions(
 class Call:
     """A robot by its number wants from floor to floor.
 
-    `to`: the floor whose button was pressed, None until somebody has pressed one.
+    `to`: the floor whose button was pressed, None until somebody has pressed one. `stay_open`:
+    who is in it waits for somebody else.
     """
 
     robot: int
     begin: str
     wants: str
     to: str | None
+    stay_open: bool = False
 
 
 @dataclass(slots=True)
@@ -61,14 +63,15 @@ class Cabin:
     heading_for: str | None = None
     calls: list[Call] = field(default_factory=list)
 
-    def call(self, robot: int, begin: str, wants: str) -> None:
+    def call(self, robot: int, begin: str, wants: str, *, stay_open: bool = False) -> None:
         """A robot wants a ride; it says so as often as it likes."""
         known = self.call_of(robot)
         if known is not None and known.wants == wants:
+            known.stay_open = stay_open
             return
         self.withdraw(robot)
         to = wants if self.plan.called_by is Caller.ROBOTS else None
-        self.calls.append(Call(robot, begin, wants, to))
+        self.calls.append(Call(robot, begin, wants, to, stay_open))
 
     def call_of(self, robot: int) -> Call | None:
         """What a robot wants of it."""
@@ -125,6 +128,8 @@ class Cabin:
             if inside or not door_is_free:
                 return
         elif served.robot in inside:
+            if served.stay_open:
+                return
             if served.to == self.floor:
                 self._take_leave(inside)
                 return

@@ -39,5 +39,9 @@ class BuildingOptions(StrictModel):
     """What a robot's battery holds when it begins; 0 never runs out."""
     carried_every_s: Annotated[float, Field(ge=0.0, le=1e6, strict=False)] = 0.0
     """About so often somebody carries a robot that drives to elsewhere on its floor; 0 is never."""
+    no_shows: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
+    """How often who is to be escorted does not come at all."""
+    dawdling: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.1
+    """How often, about every 10 s of the way, who is escorted stops for 5 to 60 s."""
     people: Annotated[int, Field(ge=0, le=100, strict=False)] = 0
     """So many people walk from room to room and sit there, as far as there are seats."""

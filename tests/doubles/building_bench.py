@@ -40,6 +40,8 @@ class BuildingBench:
         battery_wh: float = 0.0,
         people: int = 0,
         blocked_hallways: float = 0.0,
+        no_shows: float = 0.0,
+        dawdling: float = 0.0,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
         setup = WorldSetup(
@@ -57,6 +59,8 @@ class BuildingBench:
                 "battery_wh": battery_wh,
                 "people": people,
                 "blocked_hallways": blocked_hallways,
+                "no_shows": no_shows,
+                "dawdling": dawdling,
             },
         )
         self.group: SharedWorld = BUILDINGS.create_agents(setup)

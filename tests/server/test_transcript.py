@@ -180,6 +180,7 @@ def test_every_act_has_words(act: Act) -> None:
         Act.CHARGE: "robot",
         Act.BAR: "between F1/hall and F1/101",
         Act.CLEAR: "between F1/hall and F1/101",
+        Act.SEND_PERSON: "to come",
     }
     object_name = None if act in without else "pink_bar"
     to = Pose(x=0.5, y=0.0) if act is Act.MOVE else None

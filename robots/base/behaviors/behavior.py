@@ -9,6 +9,7 @@ from mend.documents.strict_model import StrictModel
 from mend.robots.base.basket import Basket, NoBasket
 from mend.robots.base.body import BasePose
 from mend.robots.base.closed_ways import Closed
+from mend.robots.base.companion import Companion, NoCompanion
 from mend.robots.base.ways import Ride, Ways
 from mend.robots.execution.behavior import Behavior
 from mend.robots.execution.command_error import CommandError
@@ -21,6 +22,7 @@ class Drive:
 
     `wait_s` passes there before the next step. `phase` says what the step is for: monitors watch
     phases. `near_m`: it is there, too, where it is so near and something keeps it from going on.
+    `leads`: the person who follows; it stands while they do not keep up.
     """
 
     name: str
@@ -29,22 +31,31 @@ class Drive:
     wait_s: float = 0.0
     phase: Phase = Phase.TRAVEL
     near_m: float = 0.0
+    leads: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class GetIn:
-    """One step: wait before an elevator until it is open for this robot, and get in."""
+    """One step: wait before an elevator until it is open for this robot, and get in.
+
+    `leads`: who is to have room beside it, if there is any.
+    """
 
     name: str
     ride: Ride
+    leads: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class RideUntilThere:
-    """One step: stay in an elevator until it is open at the floor where the ride ends."""
+    """One step: stay in an elevator until it is open at the floor where the ride ends.
+
+    `leads`: who has to be in it, too, before it leaves, if there is room for both.
+    """
 
     name: str
     ride: Ride
+    leads: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +90,25 @@ class Charging:
     name: str
 
 
-StandingStep: TypeAlias = AwaitItem | AwaitTaken | Tell | Charging
+@dataclass(frozen=True, slots=True)
+class Meet:
+    """One step: wait for a person at a place, until they are seen there."""
+
+    name: str
+    person: str
+    place: str
+
+
+@dataclass(frozen=True, slots=True)
+class Arrive:
+    """One step: wait at a place until the person who was led there is seen there, too."""
+
+    name: str
+    person: str
+    place: str
+
+
+StandingStep: TypeAlias = AwaitItem | AwaitTaken | Tell | Charging | Meet | Arrive
 """What is done where the drive before has led."""
 BaseStep: TypeAlias = Drive | GetIn | RideUntilThere | StandingStep
 UNHEARD = "nobody_answers"
@@ -101,6 +130,10 @@ def phase_of(step: BaseStep) -> Phase:
             return Phase.TELL
         case Charging():
             return Phase.CHARGE
+        case Meet():
+            return Phase.MEET
+        case Arrive():
+            return Phase.ARRIVE
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,8 +141,8 @@ class BaseSituation:
     """What a behavior may know when it lays out its steps.
 
     `here` is where the base is; `places` are the poses of all that the task's scene names so, and
-    `target` is that of the behavior's `place`, None where it has none. `basket`: its own.
-    `closed`: the ways that it keeps off.
+    `target` is that of the behavior's `place`, None where it has none. `basket`, `companion`: its
+    own. `closed`: the ways that it keeps off.
     """
 
     here: BasePose
@@ -118,6 +151,7 @@ class BaseSituation:
     ways: Ways
     basket: Basket = field(default_factory=NoBasket)
     closed: Closed = field(default_factory=dict)
+    companion: Companion = field(default_factory=NoCompanion)
 
 
 class BaseBehavior(Behavior):
@@ -128,26 +162,42 @@ class BaseBehavior(Behavior):
         """Lay out all steps. Raises `CommandError` where the parameters name what is not there."""
 
 
-def steps_of_ride(ride: Ride) -> list[BaseStep]:
-    """Go to the elevator, get in, and stay in it until it is there."""
+LEADS = 0.6
+"""So much of its best speed a base drives that somebody on foot follows."""
+
+
+def steps_of_ride(ride: Ride, leads: str | None = None) -> list[BaseStep]:
+    """Go to the elevator, get in, and stay in it until it is there; with whom it `leads`."""
     name = ride.elevator
     steps: list[BaseStep] = []
     if ride.wait_at is not None:
-        steps += [Drive(f"go to {name}", ride.wait_at), GetIn(f"get into {name}", ride)]
-    return [*steps, RideUntilThere(f"ride to {ride.to_floor}", ride)]
+        steps += [
+            _drive(f"go to {name}", ride.wait_at, leads),
+            GetIn(f"get into {name}", ride, leads),
+        ]
+    return [*steps, RideUntilThere(f"ride to {ride.to_floor}", ride, leads)]
 
 
 MEETS_M = 1.2
 """People meet a robot at a place that cannot get nearer because somebody stands there."""
 
 
-def steps_to(place: str, situation: BaseSituation, near_m: float = 0.0) -> list[BaseStep]:
+def steps_to(
+    place: str, situation: BaseSituation, near_m: float = 0.0, leads: str | None = None
+) -> list[BaseStep]:
     """Ride to the floor of a place and drive to it, or so near if something is in the way there.
+
+    `leads`: with whom.
 
     Raises `CommandError` where there is no such place.
     """
     if situation.target is None:
         raise CommandError(f"it is not known where '{place}' is")
     rides = situation.ways.rides(situation.here, situation.target, situation.closed)
-    steps = [step for ride in rides for step in steps_of_ride(ride)]
-    return [*steps, Drive(f"go to {place}", situation.target, near_m=near_m)]
+    steps = [step for ride in rides for step in steps_of_ride(ride, leads)]
+    return [*steps, _drive(f"go to {place}", situation.target, leads, near_m)]
+
+
+def _drive(name: str, to: BasePose, leads: str | None, near_m: float = 0.0) -> Drive:
+    speed = 1.0 if leads is None else LEADS
+    return Drive(name, to, speed=speed, near_m=near_m, leads=leads)

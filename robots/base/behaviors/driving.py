@@ -17,6 +17,8 @@ from mend.robots.link.messages import ReportBody, WayFound
 NEAR_M = 0.05
 TURNED_RAD = 0.09
 """A base is where it was to go when it is so near and turned no farther."""
+CLEARS_M = 2.0
+"""Who gets out of a cabin drives so far before it waits for anybody: nobody else could use it."""
 
 KEPT_OFF_S = 2.0
 """Who only passes by is let pass."""
@@ -52,16 +54,18 @@ class Driving:
         self._begin(drive)
         self._watch.check()
         headway, rounds = self._headway(), self._watch.going_round.times
+        clears_from = self._clears_from(drive)
         while not (self.is_at(drive.to) and self._base.slow) and not no_more():
             if self._is_kept_off(drive):
                 break
             if self._base.following is not None:
-                self._drive_on(drive, headway)
+                self._drive_on(drive, headway, clears_from)
             self._watch.check_if_due()
             if self._watch.going_round.times > rounds:
                 headway, rounds = self._headway(), self._watch.going_round.times
             yield
         self._base.stop()
+        self._progress.alone_since_s = None
         yield from self._watched(self._base.settle())
         yield from self._watched(self._base.wait(drive.wait_s))
 
@@ -80,20 +84,22 @@ class Driving:
     def _begin(self, drive: Drive) -> None:
         progress = self._progress
         progress.blocked_since_s, progress.stalled_s, progress.no_way = None, 0.0, None
+        progress.alone_since_s = None
         try:
             self._base.start(drive.to, drive.speed)
         except CommandError as error:
             progress.no_way = str(error)
 
-    def _drive_on(self, drive: Drive, headway: Headway) -> None:
-        """Drive while there is a way; stand still before what leaves none."""
+    def _drive_on(self, drive: Drive, headway: Headway, clears_from: BasePose | None) -> None:
+        """Drive while there is a way, and whom it leads keeps up; stand still otherwise."""
         progress, base = self._progress, self._base
         if base.jumps():
             self._begin(drive)
             if base.following is None:
                 return
-        base.drive_on()
-        if base.whereabouts.is_lost:
+        waits = self._waits(drive, clears_from)
+        base.drive_on(waits=waits)
+        if base.whereabouts.is_lost or waits:
             return
         for origin, beyond in self._passing.passed():
             self._report(WayFound(finding="open", between=[origin, beyond]))
@@ -105,6 +111,24 @@ class Driving:
             progress.blocked_since_s, progress.stalled_s = None, headway.stalled_s
         elif progress.blocked_since_s is None and base.slow:
             progress.blocked_since_s = base.body.time_s()
+
+    def _clears_from(self, drive: Drive) -> BasePose | None:
+        """Where in a cabin it is with whom it leads; None where it is in none."""
+        here, ways = self._base.body.pose(), self._base.ways
+        return here if drive.leads is not None and ways.way_out(here) is not None else None
+
+    def _waits(self, drive: Drive, clears_from: BasePose | None) -> bool:
+        """Whether whom it leads does not keep up; it gets clear of a cabin in any case."""
+        progress, base = self._progress, self._base
+        if drive.leads is None:
+            return False
+        here = base.body.pose()
+        clears = clears_from is not None and here.distance_m(clears_from) < CLEARS_M
+        if base.company.keeps_up() or clears:
+            progress.alone_since_s = None
+        elif progress.alone_since_s is None:
+            progress.alone_since_s = base.body.time_s()
+        return progress.alone_since_s is not None
 
     def _watched(self, routine: Routine[None]) -> Routine[None]:
         for _ in routine:

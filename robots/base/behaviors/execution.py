@@ -6,12 +6,14 @@ from mend.robots.base.base import Base
 from mend.robots.base.battery import ENOUGH, LOW
 from mend.robots.base.behaviors.behavior import (
     UNHEARD,
+    Arrive,
     AwaitItem,
     AwaitTaken,
     BaseStep,
     Charging,
     Drive,
     GetIn,
+    Meet,
     RideUntilThere,
     StandingStep,
     Tell,
@@ -21,8 +23,9 @@ from mend.robots.base.behaviors.driving import NEAR_M, Driving
 from mend.robots.base.behaviors.handling import Handling
 from mend.robots.base.behaviors.other_elevator import OtherElevator
 from mend.robots.base.behaviors.progress import BaseProgress
-from mend.robots.base.behaviors.riding import Riding
+from mend.robots.base.behaviors.riding import Riding, place_in
 from mend.robots.base.behaviors.watch import BaseWatch
+from mend.robots.base.companion import CAUGHT_UP_M
 from mend.robots.base.way_ahead import WayAhead
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import Execution
@@ -65,7 +68,7 @@ class BaseExecution(Execution[BaseProgress]):
                 case Drive() as drive:
                     return self._base.way_to(drive.to, self._watch.going_round.patience_s())
                 case GetIn() as step if self._base.elevators.is_open_for(step.ride):
-                    return self._base.way_to(step.ride.inside, 0.0)
+                    return self._base.way_to(place_in(step), 0.0)
                 case RideUntilThere() as step if self._riding.is_over(step.ride):
                     return WayAhead.FREE
                 case GetIn() as step if self._other.leads_there(step):
@@ -87,6 +90,15 @@ class BaseExecution(Execution[BaseProgress]):
             case _:
                 return load.as_remembered()
 
+    def accompanied(self) -> bool:
+        """Whether it sees whom it escorts, as near as the step under way, or the next, needs."""
+        left = self._progress.steps[self._done :]
+        match left[0] if left else None:
+            case RideUntilThere(ride=ride):
+                return self._riding.is_led_in(ride)
+            case _:
+                return self._base.company.is_within(CAUGHT_UP_M)
+
     def resume(self, told: Resume) -> Routine[None]:
         """Go on; who asked whether a message was heard is told so by that alone."""
         self._progress.heard = self._asked_whether_heard
@@ -105,13 +117,16 @@ class BaseExecution(Execution[BaseProgress]):
         self._other.give_up()
         self._base.elevators.withdraw()
         self._base.basket.withdraw()
+        self._base.companion.leave()
         super().end()
 
     def _walk(self, *, resumed: bool) -> Routine[bool]:
         progress = self._progress
         progress.step, progress.blocked_since_s = BEFORE_FIRST_STEP, None
-        progress.wait = progress.standing = None
+        progress.wait = progress.standing = progress.alone_since_s = None
+        self._base.company.start_anew()
         self._forget_other_offers()
+        self._invite()
         self._watch.check()
         yield from self._find_out()
         yield from self._fill_up()
@@ -138,6 +153,15 @@ class BaseExecution(Execution[BaseProgress]):
         before = steps[self._done - 1] if self._done else None
         stays = self._done == len(steps) or isinstance(steps[self._done], StandingStep)
         return stays and isinstance(before, Drive) and not self._driving.is_about_at(before)
+
+    def _invite(self) -> None:
+        """Have those hear of it whom it is to meet, or to lead."""
+        for step in self._progress.steps[self._done :]:
+            match step:
+                case Meet(person=person, place=place):
+                    self._base.companion.expect(person, place)
+                case Arrive(person=person):
+                    self._base.companion.lead(person)
 
     def _forget_other_offers(self) -> None:
         """What was offered where it stood is offered no more by who sets about something else."""
@@ -191,6 +215,10 @@ class BaseExecution(Execution[BaseProgress]):
                 yield from self._handling.tell(step)
             case Charging():
                 yield from self._handling.charge(step)
+            case Meet():
+                yield from self._handling.meet(step)
+            case Arrive():
+                yield from self._handling.arrive(step)
         return True
 
     def _react(self, interruption: Interruption) -> Routine[None]:

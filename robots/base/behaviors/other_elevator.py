@@ -93,7 +93,7 @@ class OtherElevator:
             rides = self._base.rides_round(step.ride, drive.to)
         except CommandError:
             return ()
-        again = [each for ride in rides for each in steps_of_ride(ride)]
+        again = [each for ride in rides for each in steps_of_ride(ride, step.leads)]
         return [*again, *left[arrives:]] if rides else ()
 
 

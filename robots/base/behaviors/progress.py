@@ -44,6 +44,7 @@ class BaseProgress(Progress):
     how long it has come no nearer, although it may move. `no_way`: why it knows no way. `wait`: for
     what elevator it waits, and `standing` for what people. `heard`: somebody has said that the
     message was heard. `awaits_s`: since when it has waited for elevators that have not come.
+    `alone_since_s`: since when it has waited for whom it leads.
     """
 
     steps: Sequence[BaseStep] = ()
@@ -54,6 +55,7 @@ class BaseProgress(Progress):
     standing: StandingWait | None = None
     heard: bool = False
     awaits_s: dict[str, float] = field(default_factory=dict)
+    alone_since_s: float | None = None
 
     @property
     def taken(self) -> BaseStep | None:

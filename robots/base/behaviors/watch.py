@@ -4,10 +4,24 @@ import math
 from collections.abc import Callable, Sequence
 
 from mend.robots.base.base import Base
-from mend.robots.base.behaviors.behavior import AwaitItem, AwaitTaken, Charging, Drive, Tell
+from mend.robots.base.behaviors.behavior import (
+    Arrive,
+    AwaitItem,
+    AwaitTaken,
+    Charging,
+    Drive,
+    Meet,
+    Tell,
+)
 from mend.robots.base.behaviors.going_round import GoingRound
 from mend.robots.base.behaviors.progress import BaseProgress
-from mend.robots.base.monitors.monitor import AwaitedElevator, BaseView, Power, StandingFor
+from mend.robots.base.monitors.monitor import (
+    AwaitedElevator,
+    BaseView,
+    Left,
+    Power,
+    StandingFor,
+)
 from mend.robots.execution.monitor import AnyMonitor
 from mend.robots.execution.watch import Watch
 from mend.robots.link.messages import Detection, ReportBody
@@ -66,6 +80,7 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
                 lacks=self._lacks(),
                 missing_kg=self._missing_kg(),
                 power=self._power(),
+                left=self._left(now),
             )
         )
 
@@ -79,8 +94,15 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
         match standing.step:
             case AwaitItem(item=item, place=place) | AwaitTaken(item=item, place=place):
                 return StandingFor(item, place, now_s - standing.since_s)
+            case Meet(place=place) | Arrive(place=place):
+                return StandingFor(None, place, now_s - standing.since_s)
             case Tell() | Charging():
                 return StandingFor(None, None, now_s - standing.since_s)
+
+    def _left(self, now_s: float) -> Left | None:
+        """How long it has waited for whom it leads."""
+        since_s = self._progress.alone_since_s
+        return None if since_s is None else Left(now_s - since_s, self._base.company.last)
 
     def _power(self) -> Power:
         battery = self._base.battery

@@ -55,6 +55,7 @@ class WayFollower:
         self._way, self.goal = Polyline(way), goal
         self._along_m = 0.0
         self._before: BasePose | None = None
+        self._unspent_m = 0.0
         self._at_end = False
         self._kept = NO_WAY
         self.length_m = self._way.length_m
@@ -101,12 +102,16 @@ class WayFollower:
     def _advance(self, here: BasePose) -> None:
         """Find how far on the way it has come: no farther than it can have moved.
 
-        Who goes back to get round something still wants to get as far as before.
+        Who cuts a corner is nearest to what is before that for a while, and then far beyond. Who
+        goes back to get round something still wants to get as far as before.
         """
         moved_m = 0.0 if self._before is None else here.distance_m(self._before)
         self._before = here
-        most_m = min(self._along_m + 2.0 * moved_m + 1e-3, self.length_m)
-        self._along_m = self._way.nearest_m(here.x, here.y, self._along_m, most_m)
+        self._unspent_m = min(self._unspent_m + 2.0 * moved_m, _SEEN_AHEAD_M)
+        most_m = min(self._along_m + self._unspent_m + 1e-3, self.length_m)
+        along_m = self._way.nearest_m(here.x, here.y, self._along_m, most_m)
+        self._unspent_m = max(0.0, self._unspent_m - (along_m - self._along_m))
+        self._along_m = along_m
 
     def _samples_m(self) -> Points:
         """How far along the way the points are that it may get to next."""
@@ -150,9 +155,6 @@ class WayFollower:
             return Steering(None, 0.0)
         self.barred = False
         assert route.reached is not None, "it leads on"
-        if route.reached == len(ahead_m) - 1 and route.cost_m < _GETS_ON_M:
-            # It has cut a corner so sharp that what is left of the way lies farther on.
-            self._along_m = float(ahead_m[-1])
         self.left_m = route.cost_m + self.length_m - float(ahead_m[route.reached])
         towards = in_frame_of(np.array([route.carrot]), here)[0]
         if off_m > FACES_GOAL_M:

@@ -174,6 +174,24 @@ def test_who_is_in_a_cabin_does_not_wait_for_it() -> None:
     assert ride.wait_at is None
 
 
+def test_a_cabin_has_room_for_two_beside_its_middle_unless_walls_are_too_near() -> None:
+    document = random_building(2, 3, 6)
+    floor = document.floors["F2"]
+    to = pose_of(Frame(), document.floors["F1"].places["101"], 0.0)
+    here = pose_of(Frame(), floor.places["201"], floor.height)
+    (ride,) = FloorWays(Building(document), Frame(), 1.0, 0.3).rides(here, to)
+    assert ride.aside is not None
+    assert ride.aside.distance_m(ride.inside) == pytest.approx(0.25)
+    off_x, off_y = ride.aside.x - ride.inside.x, ride.aside.y - ride.inside.y
+    ends = [(ride.inside.x + n * off_x, ride.inside.y + n * off_y) for n in (2.1, 2.4)]
+    walls = [*floor.walls, (*ends[0], *ends[1])]
+    told = document.model_dump(mode="json")
+    told["floors"]["F2"]["walls"] = walls
+    narrow = Building(BuildingDocument.model_validate_json(json.dumps(told)))
+    (ride,) = FloorWays(narrow, Frame(), 1.0, 0.3).rides(here, to)
+    assert ride.aside is None
+
+
 def test_the_walls_around_a_pose_are_known_and_a_cabin_has_a_name() -> None:
     building = Building(random_building(2, 2, 6))
     ways = FloorWays(building, Frame(), 1.0, 0.3)

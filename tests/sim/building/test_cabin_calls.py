@@ -89,6 +89,17 @@ def test_it_does_not_shut_on_anybody() -> None:
     assert shaft.cabin.is_open_at("F1")
 
 
+def test_it_stays_open_for_whom_somebody_in_it_waits_for() -> None:
+    shaft = Shaft(cabin_of())
+    shaft.cabin.call(7, "F1", "F2", stay_open=True)
+    shaft.until_open_at("F1")
+    shaft.inside = [7]
+    shaft.wait(2.0 * HELD_S)
+    assert shaft.cabin.is_open_at("F1")
+    shaft.cabin.call(7, "F1", "F2")
+    shaft.until_open_at("F2")
+
+
 def test_who_does_not_get_in_is_not_waited_for_for_ever() -> None:
     shaft = Shaft(cabin_of())
     shaft.cabin.call(7, "F1", "F2")

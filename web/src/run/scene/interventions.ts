@@ -77,6 +77,7 @@ const DONE: Readonly<Record<Intervention["act"], (object: string) => string>> = 
   charge: () => "The robot is plugged in.",
   bar: () => "A way of the building is barred.",
   clear: () => "A way of the building is cleared.",
+  send_person: () => "Whom the robot escorts is told to come.",
 };
 
 /** One sentence on what was done. */
