@@ -1,6 +1,7 @@
 """Days of a building in discrete events: how fast, and where the time of its robots goes.
 
-Requests of the published mix come at random from eight to six; legs take drawn times.
+Requests of the published mix come at random from eight to six. Drives take what the drive-time
+model says (`drive_times.py`), elevators one robot at a time, and people drawn times.
 
     python benchmarks/dispatch_days.py [--days 1] [--robots 4] [--requests 40] [--seed 1]
 """
@@ -14,10 +15,11 @@ from statistics import median
 
 from dispatch_happenings import DispatchHappenings, drawn_fleet
 
+from mend.fleet.dispatch.discrete_execution import DiscreteExecution, LegTimes
 from mend.fleet.dispatch.dispatcher import Dispatcher
-from mend.fleet.dispatch.drawn_execution import DrawnExecution, LegTimes
 from mend.fleet.requests import request_of
 from mend.fleet.scheduling.alns.solve import prepare
+from mend.sim.building.trips import BuildingTrips
 
 DAY_S, FROM_S, UNTIL_S = 86400.0, 8 * 3600.0, 18 * 3600.0
 PARTS = ("start_s", "elevator_s", "driving_s", "blocked_s", "waiting_s", "end_s")
@@ -38,7 +40,9 @@ def main() -> None:
     )
     prepare()
     dispatcher = Dispatcher(building, setting)
-    execution = DrawnExecution(dispatcher, LegTimes(), Random(given.seed))
+    execution = DiscreteExecution(
+        dispatcher, BuildingTrips(building), LegTimes(), Random(given.seed)
+    )
     people, chance = DispatchHappenings(building, Random(given.seed)), Random(given.seed + 1)
     took_ms: dict[bool, list[float]] = {True: [], False: []}
     began_s = time.process_time()

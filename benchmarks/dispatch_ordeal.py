@@ -9,9 +9,10 @@ from random import Random
 from dispatch_happenings import MIX, THINGS, DispatchHappenings, drawn_fleet
 from dispatch_ledger import DispatchLedger, WitnessedDispatcher
 
-from mend.fleet.dispatch.drawn_execution import DrawnExecution, LegTimes
+from mend.fleet.dispatch.discrete_execution import DiscreteExecution, LegTimes
 from mend.fleet.dispatch.snapshot import DispatcherSnapshot
 from mend.maps.building.building import PlaceKind
+from mend.sim.building.trips import BuildingTrips
 
 HARD = LegTimes(fails=0.1, loses=0.01)
 OVER = frozenset({"done", "refused", "cancelled", "failed"})
@@ -40,7 +41,10 @@ class DispatchOrdeal:
         self._ledger = DispatchLedger()
         dispatcher = WitnessedDispatcher(self.building, self.setting)
         dispatcher.ledger = self._ledger
-        self.execution = DrawnExecution(dispatcher, HARD, Random(seed + 1), watch=self._watch)
+        trips = BuildingTrips(self.building)
+        self.execution = DiscreteExecution(
+            dispatcher, trips, HARD, Random(seed + 1), watch=self._watch
+        )
         mix = THINGS if seed % 2 else MIX
         self._happenings = DispatchHappenings(self.building, Random(seed + 2), mix=mix)
 

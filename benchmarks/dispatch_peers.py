@@ -1,12 +1,13 @@
 """A dispatcher against doing without: what is done in time, how long people wait, metres driven.
 
-The same requests of the published mix, in drawn offices, in discrete events with times from the
-same distributions (`fleet/dispatch/drawn_execution.py`; nothing fails), shared out by the
-dispatcher, first come first served, and by lowest bid as in Open-RMF, the last two one request at a
-time for each robot (`peers/one_task_at_a_time.py`). Most requests have a latest moment. What the
-dispatcher refuses, since it cannot be done in time, counts as not done in time; the others do it
-late. What a plan changed on the way counts as driven to its end. Told are the means over the seeds
-and how much the others differ, with their 95 % intervals.
+The same requests of the published mix, in drawn offices, in discrete events
+(`fleet/dispatch/discrete_execution.py`; the same drive times, elevators that take one robot at a
+time, people's times from the same distributions; nothing fails), shared out by the dispatcher,
+first come first served, and by lowest bid as in Open-RMF, the last two one request at a time for
+each robot (`peers/one_task_at_a_time.py`). Most requests have a latest moment. What the dispatcher
+refuses, since it cannot be done in time, counts as not done in time; the others do it late. What a
+plan changed on the way counts as driven to its end. Told are the means over the seeds and how much
+the others differ, with their 95 % intervals.
 
     python benchmarks/dispatch_peers.py [--seeds 30] [--first 1] [--robots 4] [--hours 2]
         [--requests 60 120 180 240] [--floors 4] [--quick]
@@ -23,14 +24,15 @@ from dispatch_happenings import MIX
 from peers.one_task_at_a_time import OneTaskAtATime, Sharing
 
 from mend.fleet.dispatch.booking import AnyRequest
+from mend.fleet.dispatch.discrete_execution import DiscreteExecution, LegTimes
 from mend.fleet.dispatch.dispatcher import Dispatcher
-from mend.fleet.dispatch.drawn_execution import DrawnExecution, LegTimes
 from mend.fleet.dispatch.leg import LegOutcome
 from mend.fleet.dispatch.setting import FleetSetting, ServiceRobot
 from mend.fleet.requests import RequestStatus, request_of
 from mend.fleet.scheduling.alns.solve import prepare
 from mend.maps.building.building import Building, PlaceKind
 from mend.maps.building.random_building import random_building
+from mend.sim.building.trips import BuildingTrips
 
 TIMES = LegTimes(fails=0.0, loses=0.0)
 MEND = "dispatcher"
@@ -108,36 +110,34 @@ def shifts_of(
     building: Building, setting: FleetSetting, asked: Asked, seed: int
 ) -> dict[str, Shift]:
     """The same requests in each of the three ways."""
-    shifts = {MEND: _dispatched(building, setting, asked, seed)}
+    trips = BuildingTrips(building)
+    shifts = {MEND: _dispatched(building, setting, asked, trips, seed)}
     for sharing in Sharing:
-        fleet = OneTaskAtATime(building, setting, TIMES, sharing, Random(seed + 1))
+        fleet = OneTaskAtATime(building, setting, trips, TIMES, sharing, Random(seed + 1))
         fleet.work_off(asked)
         shifts[sharing] = Shift(fleet.done_s, fleet.driven_m)
     return shifts
 
 
-def _dispatched(building: Building, setting: FleetSetting, asked: Asked, seed: int) -> Shift:
+def _dispatched(
+    building: Building, setting: FleetSetting, asked: Asked, trips: BuildingTrips, seed: int
+) -> Shift:
     dispatcher = Dispatcher(building, setting)
-    execution = DrawnExecution(dispatcher, TIMES, Random(seed + 1))
+    execution = DiscreteExecution(dispatcher, trips, TIMES, Random(seed + 1))
     for at_s, request in asked:
         execution.run_until(at_s)
         dispatcher.submit(request, at_s)
     execution.run_until(asked[-1][0] + LONGEST_S)
     done_s = {}
-    graph = building.graph
-    distance_m, _ = graph.shortest(setting.speed_m_s)
-    at = {each.name: graph.index(building.find(each.start)) for each in setting.robots}
-    driven_m = 0.0
     for record in execution.records:
-        leg, there = record.leg, graph.index(record.leg.place)
-        driven_m += distance_m[at[leg.robot], there]
-        at[leg.robot] = there
+        leg = record.leg
         if record.outcome is not LegOutcome.DONE:
             continue
         lasts_s = record.start_s + record.elevator_s + record.driving_s + record.blocked_s
         lasts_s += record.waiting_s + record.end_s + leg.done_s - leg.begins_s
         done_s[leg.booking] = record.begun_s + lasts_s
     done = [each.name for each in dispatcher.views() if each.status is RequestStatus.DONE]
+    driven_m = sum(each.driven_m for each in execution.records)
     return Shift({name: done_s[name] for name in done}, driven_m)
 
 

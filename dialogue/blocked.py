@@ -39,6 +39,10 @@ FELT = Offer(
     put_right={},
 )
 
-BY_LASER = replace(SEEN, placeable=False)
+BY_LASER = replace(
+    SEEN,
+    placeable=False,
+    put_right={**SEEN.put_right, Expectation.LED_ROUND: Resolution.ROBOT_FINISH},
+)
 
 script = offer_script(SEEN, {Sensed.FELT: FELT, Sensed.BY_LASER: BY_LASER})

@@ -80,11 +80,13 @@ _SEEN_NOW = {
     Expectation.AT_PLACE: "I see the {object} at its place now.",
     Expectation.IN_REACH: "I see the {object} within my reach now.",
     Expectation.WAY_CLEAR: "I see nothing in my way now.",
+    Expectation.LED_ROUND: "Another way leads round. I take it.",
     Expectation.VIEW_CLEAR: "I see the table now.",
     Expectation.LOCATED: "I know where I am now.",
     Expectation.LOADED: "I feel that my basket is heavier now.",
     Expectation.UNLOADED: "I feel that my basket is lighter now.",
     Expectation.CHARGED: "I feel current now.",
+    Expectation.ACCOMPANIED: "I see {person} beside me now.",
     Expectation.IN_GRIPPER: "I have the {object} between my fingers.",
 }
 
@@ -170,6 +172,8 @@ class Conversation:
         said = state.thanks if change.by_a_person else state.unchanged
         if change is Change.UNKNOWN:
             said = _SEEN_NOW[EXPECTED[state.help]]
+        if change is Change.LED_ROUND:
+            said = _SEEN_NOW[Expectation.LED_ROUND]
         said = self._word(said)
         return self._settle(CloseReason.RESOLVED, state.resolution, said, change)
 
@@ -291,14 +295,15 @@ class Conversation:
     ) -> list[Turn]:
         """Close with what was seen, which tells whether anybody has helped, and what comes next."""
         helped = change.by_a_person
-        resolution = self._resolution_for(wanted, helped)
+        led_round = change is Change.LED_ROUND
+        resolution = wanted if led_round else self._resolution_for(wanted, helped)
         failed = not helped or self._outlook.helped_out
         match resolution:
             case Resolution.ROBOT_RETRY if failed:
                 then = self._next_after_failure()
             case Resolution.ROBOT_RETRY:
                 then = sentence(self._said_with.after_help())
-            case Resolution.ROBOT_FINISH:
+            case Resolution.ROBOT_FINISH if not led_round or self._said_with.begins_anew:
                 then = sentence(self._said_with.going_on())
             case _:
                 then = ""

@@ -15,7 +15,10 @@ script = offer_script(
         thanks="Thank you. I see the door open.",
         unchanged="I see no shut door before me.",
         not_seen="I do not see the door open yet. Are you still opening it?",
-        put_right={Expectation.WAY_CLEAR: Resolution.ROBOT_FINISH},
+        put_right={
+            Expectation.WAY_CLEAR: Resolution.ROBOT_FINISH,
+            Expectation.LED_ROUND: Resolution.ROBOT_FINISH,
+        },
         denied=frozenset({Expectation.WAY_CLEAR}),
         placeable=False,
     )

@@ -16,7 +16,10 @@ script = offer_script(
         thanks="Thank you. I see the elevator open.",
         unchanged="I see the elevator open for me.",
         not_seen="I do not see the elevator open where I need it yet. Is it on its way?",
-        put_right={Expectation.WAY_CLEAR: Resolution.ROBOT_FINISH},
+        put_right={
+            Expectation.WAY_CLEAR: Resolution.ROBOT_FINISH,
+            Expectation.LED_ROUND: Resolution.ROBOT_FINISH,
+        },
         denied=frozenset({Expectation.WAY_CLEAR}),
         placeable=False,
     )

@@ -15,10 +15,12 @@ A camera may come to see again by itself, what it took for something in the way 
 itself, and a robot may find out by itself where it is, so that nobody is thanked for any of these
 who has not promised or told it.
 
+Another way that leads round puts it right, also where the first look finds it; nobody has helped.
+
 A person has helped if a change was seen that only a person can have made: the object appeared,
 moved, or came between the fingers, the basket got heavier or lighter as was asked, current
-came, or what was in the way is gone. A promise alone is not help, nor is a look that sees no more
-than the first one did.
+came, who is escorted came near, or what was in the way is gone. A promise alone is not help, nor
+is a look that sees no more than the first one did.
 """
 
 import math
@@ -60,17 +62,22 @@ class Change(StrEnum):
     """Something was taken out of the basket that was to be taken out."""
     CHARGED = "charged"
     """The robot was plugged in."""
+    LED_ROUND = "led_round"
+    """What is in the way still is, but another way leads round."""
+    CAME = "came"
+    """Whom the robot escorts has come to it."""
 
     @property
     def by_a_person(self) -> bool:
         """Whether only a person can have made it."""
-        return self not in (Change.UNKNOWN, Change.NONE)
+        return self not in (Change.UNKNOWN, Change.NONE, Change.LED_ROUND)
 
 
 _FELT = {
     Expectation.LOADED: Change.LOADED,
     Expectation.UNLOADED: Change.UNLOADED,
     Expectation.CHARGED: Change.CHARGED,
+    Expectation.ACCOMPANIED: Change.CAME,
 }
 
 
@@ -96,6 +103,8 @@ class PutRight:
 
 def change_between(first: LookOutcome | None, now: LookOutcome) -> Change:
     """What a look sees changed since the first one."""
+    if Expectation.LED_ROUND in now.fulfilled:
+        return Change.LED_ROUND
     if first is None:
         return Change.UNKNOWN
     cleared = now.fulfilled - first.fulfilled
@@ -129,6 +138,8 @@ def put_right(
     watched: Sequence[Expectation], first: LookOutcome, now: LookOutcome
 ) -> PutRight | None:
     """What has put an issue right since the first look; `watched`: the most telling first."""
+    if Expectation.LED_ROUND in (now.fulfilled - first.fulfilled).intersection(watched):
+        return PutRight(Expectation.LED_ROUND, Change.LED_ROUND)
     change = change_between(first, now)
     moved = change in (Change.APPEARED, Change.MOVED)
     for each in watched:
@@ -145,6 +156,8 @@ def contradiction(
     watched: Sequence[Expectation], denied: frozenset[Expectation], first: LookOutcome
 ) -> PutRight | None:
     """What the first look saw that the issue itself denies: the robot may have been wrong."""
+    if Expectation.LED_ROUND in first.fulfilled.intersection(watched):
+        return PutRight(Expectation.LED_ROUND, Change.LED_ROUND)
     for each in watched:
         if each in denied & first.fulfilled:
             return PutRight(each, Change.NONE)

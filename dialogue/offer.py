@@ -32,7 +32,7 @@ class Offer:
     something else, until it is `given_up`; once `help` is seen the robot says
     `thanks` (or `unchanged`, where it was so before) and the dialogue closes with `resolution`.
     `put_right`, `denied` and `may_be_mistaken` are a script's. `placeable`: there is an object
-    that a helper could place instead; else who refuses is only asked whether to leave it out.
+    that a helper could place instead; else who refuses is only asked whether it `leaves` it out.
     """
 
     question: str
@@ -48,6 +48,7 @@ class Offer:
     denied: frozenset[Expectation] = frozenset()
     may_be_mistaken: bool = False
     placeable: bool = True
+    leaves: str = place_branch.LEAVES
     not_felt: Mapping[Felt, str] = field(default_factory=dict)
     given_up: str = "I still do not see that help."
 
@@ -80,11 +81,11 @@ def _script(offer: Offer, patience: Patience, variants: Mapping[Sensed, Script])
     )
     branch = place_branch.STATES
     if not offer.placeable:
-        refused, refused_effect = "leave", place_branch.LEAVE_EFFECT
+        branch = place_branch.leaving(offer.leaves)
+        refused, refused_effect = "leave", f"I ask whether I shall {offer.leaves} ({{attempt}})."
         leave = branch["leave"]
         assert isinstance(leave, AskState), "the branch ends by asking whether to leave it out"
         last = replace(leave, text=f"{offer.failed} {leave.text}", if_refused=False)
-        branch = {name: branch[name] for name in ("leave", "left_out", "later")}
     return Script(
         opening="question",
         failed_opening=FAILED,

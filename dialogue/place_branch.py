@@ -25,7 +25,25 @@ OPENING = "will_you_place"
 OPENING_EFFECT = "I ask whether you will place the {object} yourself ({attempt})."
 
 YES_EFFECT = "You put the {object} at its place; it is done once I see it there ({attempt})."
-LEAVE_EFFECT = "I ask whether I shall leave the {object} out ({attempt})."
+LEAVES = "leave the {object} out"
+LEAVE_EFFECT = f"I ask whether I shall {LEAVES} ({{attempt}})."
+
+
+def leaving(leaves: str = LEAVES) -> Mapping[str, State]:
+    """The end of the branch, from `leave` on: `leaves` is what the robot does without the help."""
+    return {
+        "leave": AskState(
+            text=f"Shall I {leaves}?",
+            yes="left_out",
+            yes_effect=f"I {leaves}, and the task counts it as left out by you.",
+            no="later",
+            no_effect=ATTEMPT_FAILED,
+            if_refused=True,
+        ),
+        "left_out": LeaveState(text=f"All right. I {leaves}."),
+        "later": CloseState(text="All right.", resolution=Resolution.ROBOT_RETRY),
+    }
+
 
 STATES: Mapping[str, State] = {
     OPENING: AskState(
@@ -45,16 +63,7 @@ STATES: Mapping[str, State] = {
         otherwise="leave",
         otherwise_effect=LEAVE_EFFECT,
     ),
-    "leave": AskState(
-        text="Shall I leave the {object} out?",
-        yes="left_out",
-        yes_effect="I leave the {object} out, and the task counts it as left out by you.",
-        no="later",
-        no_effect=ATTEMPT_FAILED,
-        if_refused=True,
-    ),
-    "left_out": LeaveState(text="All right. I leave the {object} out."),
-    "later": CloseState(text="All right.", resolution=Resolution.ROBOT_RETRY),
+    **leaving(),
 }
 
 

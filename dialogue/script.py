@@ -36,6 +36,8 @@ class Help(StrEnum):
     """Take something out of the robot's basket."""
     CHARGE = "charge"
     """Plug the robot in."""
+    SEND_PERSON = "send_person"
+    """Have whom the robot escorts come to it."""
 
 
 class Felt(StrEnum):
@@ -132,6 +134,8 @@ class Expectation(StrEnum):
     """The object is between the robot's fingers."""
     WAY_CLEAR = "way_clear"
     """Nothing is in the arm's way."""
+    LED_ROUND = "led_round"
+    """Another way leads round what is in the way of a base."""
     VIEW_CLEAR = "view_clear"
     """The head camera shows the table."""
     LOCATED = "located"
@@ -142,6 +146,8 @@ class Expectation(StrEnum):
     """The robot feels that its basket is lighter by what was to be taken out."""
     CHARGED = "charged"
     """The robot feels that its battery is being charged."""
+    ACCOMPANIED = "accompanied"
+    """The robot sees near it whom it escorts."""
 
 
 EXPECTED: Mapping[Help, Expectation] = {
@@ -154,6 +160,7 @@ EXPECTED: Mapping[Help, Expectation] = {
     Help.PUT_IN: Expectation.LOADED,
     Help.TAKE_OUT: Expectation.UNLOADED,
     Help.CHARGE: Expectation.CHARGED,
+    Help.SEND_PERSON: Expectation.ACCOMPANIED,
 }
 """What a robot has to see before a promise counts as kept."""
 

@@ -13,6 +13,7 @@ FIELDS = frozenset(
         "object",
         "item",
         "message",
+        "person",
         "with_object",
         "place",
         "name",
@@ -26,7 +27,8 @@ FIELDS = frozenset(
         *_GUESSES,
     }
 )
-"""`item`: what is carried for people, and `message`: what they are told.
+"""`item`: what is carried for people, `message`: what they are told, and `person`:
+who is escorted.
 `with_object`: ` with the cup` with a blank before it, or nothing where there is no object.
 `why`: what the robot sensed, as a sentence with a blank before it, or nothing. `attempt`:
 `attempt 1 of 3`. `times`: how often this has happened. `again`, `later`, `go_on`: what the robot
@@ -42,6 +44,7 @@ def word(text: str, issue: Issue, outlook: Outlook) -> str:
         **guesses,
         item=spoken(issue.item or issue.name),
         message=issue.message or "",
+        person=issue.person or "somebody",
         object=spoken(issue.object or issue.item or issue.name),
         with_object=f" with the {spoken(issue.object)}" if issue.object else "",
         place=spoken(issue.place or issue.name),

@@ -76,6 +76,7 @@ class NavigationGraph:
     def __init__(self, places: Sequence[Place], ways: Iterable[Way]) -> None:
         self.places = tuple(places)
         self.ways = tuple(ways)
+        self._ends = frozenset(frozenset((way.a, way.b)) for way in self.ways)
         self._index = {place.name: number for number, place in enumerate(self.places)}
         mistakes = self._mistakes()
         if mistakes:
@@ -84,6 +85,20 @@ class NavigationGraph:
     def index(self, name: str) -> int:
         """The number of a place. Raises `KeyError`."""
         return self._index[name]
+
+    def together(self, between: Iterable[str]) -> frozenset[frozenset[str]]:
+        """The ways that are closed with one: of an elevator all its rides, else that one alone.
+
+        Ways are named by their ends; none for places that are no neighbours.
+        """
+        rides = {frozenset((e.a, e.b)) for e in self.ways if e.kind is WayKind.ELEVATOR}
+        found, stops = set[frozenset[str]](), frozenset(between)
+        if stops not in rides:
+            return frozenset(each for each in self._ends if each == stops)
+        while more := {each for each in rides - found if each & stops}:
+            found |= more
+            stops = stops.union(*more)
+        return frozenset(found)
 
     def shortest(
         self, speed_m_s: float, *, from_s: float = 0.0, until_s: float = inf

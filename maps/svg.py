@@ -6,6 +6,9 @@ FONT_PX = 11.0
 CHARACTER_PX = 0.62 * FONT_PX
 """How wide a character is at most on average; texts are laid out by this."""
 
+_READABLE = 0.75
+"""A drawing may be shown so much smaller."""
+
 COLORS = (
     "#4269d0", "#e0851b", "#3ca951", "#d6483b", "#8d5ad6",
     "#1a9fae", "#d4569a", "#8a7a2f", "#6f8796", "#7aa52c",
@@ -45,16 +48,20 @@ class Svg:
     def __init__(self) -> None:
         self._parts: list[str] = []
 
-    def add(self, tag: str, content: str | None = None, **attributes: str | float) -> None:
-        """An element; `class_` is its class, an underscore in a name a hyphen."""
+    def add(
+        self, tag: str, content: str | None = None, tip: str = "", **attributes: str | float
+    ) -> None:
+        """An element; `class_` is its class, an underscore in a name a hyphen.
+
+        `tip` is what it says when it is pointed at.
+        """
         written = "".join(
             f" {name.rstrip('_').replace('_', '-')}={quoteattr(_value(value))}"
             for name, value in attributes.items()
         )
-        if content is None:
-            self._parts.append(f"<{tag}{written}/>")
-        else:
-            self._parts.append(f"<{tag}{written}>{escape(content)}</{tag}>")
+        within = escape(content or "") + (f"<title>{escape(tip)}</title>" if tip else "")
+        ending = f">{within}</{tag}>" if within or content is not None else "/>"
+        self._parts.append(f"<{tag}{written}{ending}")
 
     def text(self, x: float, y: float, text: str, class_: str = "") -> None:
         """A text whose baseline begins at a point."""
@@ -66,6 +73,20 @@ class Svg:
             "path", d=f"M{x:.1f} {y - radius:.1f}l{radius:.1f} {radius:.1f} {-radius:.1f} "
             f"{radius:.1f} {-radius:.1f} {-radius:.1f}z", class_=class_,
         )  # fmt: skip
+
+    def figure(self, width: float, height: float, title: str, description: str) -> str:
+        """A part of a page, which styles it; who cannot see it is read the description.
+
+        On a narrow page it gets smaller until its text could not be read.
+        """
+        return (
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}" '
+            f'style="min-width:{_READABLE * width:.0f}px" role="img" '
+            f"aria-label={quoteattr(f'{title}: {description}')}>\n"
+            f"<title>{escape(title)}</title>\n<desc>{escape(description)}</desc>\n"
+            + "\n".join(self._parts)
+            + "\n</svg>\n"
+        )
 
     def document(self, width: float, height: float, title: str) -> str:
         """The whole file."""

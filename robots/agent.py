@@ -7,7 +7,15 @@ reports. Simulated and real robots, and tests, drive the same core.
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol, runtime_checkable
 
-from mend.robots.link.messages import CommandBody, Hello, Picture, PoseLayout, Poses, ReportBody
+from mend.robots.link.messages import (
+    CommandBody,
+    Driven,
+    Hello,
+    Picture,
+    PoseLayout,
+    Poses,
+    ReportBody,
+)
 
 Emit = Callable[[ReportBody, float, dict[str, Any] | None], None]
 """Takes a report's body, the time (s, robot's clock) and a simulated world's state or None."""
@@ -76,4 +84,13 @@ class ShowsPoses(Protocol):
 
     def poses(self) -> Poses:
         """Where everything is now."""
+        ...
+
+
+@runtime_checkable
+class Drives(Protocol):
+    """An agent core that may have a base, and then knows how far that has driven."""
+
+    def driven(self) -> Driven | None:
+        """So far, since its program began; None without a base."""
         ...

@@ -17,8 +17,10 @@ from mend.robots.link.messages import (
     IDENTITY,
     PROTOCOL_VERSION,
     ActiveExecution,
+    Avoid,
     ClipTaken,
     CommandBody,
+    Driven,
     Finished,
     Hello,
     Holding,
@@ -105,6 +107,7 @@ class Robot:
             time=self.time_s(),
             room=next((each.room for each in subsystems if each.room is not None), None),
             keeps_clear=all(each.keeps_clear for each in subsystems),
+            avoids_ways=any(each.avoids_ways for each in subsystems),
         )
 
     @property
@@ -149,6 +152,11 @@ class Robot:
         for each in self._subsystems:
             poses = each.show(poses)
         return poses
+
+    def driven(self) -> Driven | None:
+        """What its base has driven so far; None without one."""
+        told = (each.driven for each in self._subsystems)
+        return next((each for each in told if each is not None), None)
 
     def attach(self, emit: Emit, emit_picture: EmitPicture) -> None:
         """Say where reports and pictures go; called once, before anything else."""
@@ -244,6 +252,9 @@ class Robot:
             case SlowDown():
                 for each in self._subsystems:
                     each.effector.slow_down(body.factor)
+            case Avoid():
+                for each in self._subsystems:
+                    each.avoid(body)
             case TakePicture():
                 self._take_picture(command_id, body)
             case Shutdown():

@@ -88,6 +88,7 @@ SHOTS: dict[str, Shot] = {
     "editor": Shot(situations.wrong_tree),
     "editor_dark": Shot(situations.wrong_tree, theme="dark"),
     "start_run": Shot(fresh_start),
+    "fleet": Shot(situations.fleet),
     "settings": Shot(situations.settings),
     "sign_in": Shot(first_sign_in),
 }

@@ -342,6 +342,11 @@ class MendClient:
             "POST", f"/api/sites/{site}/fleet/robots/{quote(robot)}/back_in_service"
         )
 
+    async def send_robot(self, site: UUID, robot: str, place: str) -> None:
+        """Have a robot that carries out no leg go to a place, as `FLOOR/PLACE`."""
+        path = f"/api/sites/{site}/fleet/robots/{quote(robot)}/go"
+        await self._request("POST", path, json={"place": place})
+
     async def tell_of_way(self, site: UUID, way: WayFound) -> None:
         """Say that a way is blocked, a door closed, or open again."""
         path = f"/api/sites/{site}/fleet/ways"

@@ -74,6 +74,7 @@ DEEDS: dict[Act, str] = {
     Act.CHARGE: "plugs the robot in",
     Act.BAR: "bars the way between {between}",
     Act.CLEAR: "clears the way between {between}",
+    Act.SEND_PERSON: "tells who is to follow a robot to come",
 }
 
 PROMISES: dict[Help, str] = {
@@ -86,6 +87,7 @@ PROMISES: dict[Help, str] = {
     Help.PUT_IN: "something put into its basket",
     Help.TAKE_OUT: "something taken out of its basket",
     Help.CHARGE: "current",
+    Help.SEND_PERSON: "who is to follow it beside it",
 }
 
 _FELT = (Help.PUT_IN, Help.TAKE_OUT, Help.CHARGE)
@@ -121,6 +123,9 @@ CHANGES: dict[Change, str] = {
     Change.LOADED: "",
     Change.UNLOADED: "",
     Change.CHARGED: "",
+    Change.TOLD: "",
+    Change.LED_ROUND: "",
+    Change.CAME: "",
 }
 
 
@@ -210,7 +215,9 @@ class Transcript:
         | ev.PlanChanged
         | ev.FleetTold
         | ev.LegBegun
-        | ev.LegEnded,
+        | ev.LegEnded
+        | ev.ErrandBegun
+        | ev.ErrandEnded,
     ) -> list[Line]:
         return []  # It belongs to no run.
 
@@ -337,6 +344,8 @@ class Transcript:
     def _(self, event: ev.HelpVerified) -> list[Line]:
         how = "feels" if event.help in _FELT else "sees"
         text = f"{how} {_promised(event)}{CHANGES[event.change]}"
+        if event.change is Change.LED_ROUND:
+            text = "sees that another way leads round"
         return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
     @lines.register
@@ -389,6 +398,13 @@ class Transcript:
     @lines.register
     def _(self, event: ev.RobotResumed) -> list[Line]:
         text = f"moves again, at step {event.step}"
+        return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
+
+    @lines.register
+    def _(self, event: ev.WayFound) -> list[Line]:
+        finding, way = event.finding.replace("_", " "), " and ".join(event.between)
+        then = "" if event.finding == "open" else "; it goes round"
+        text = f"found the way between {way}: {finding}{then}"
         return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
 

@@ -19,6 +19,7 @@ _ACTS = {
     "put_in": Act.PUT_IN,
     "take_out": Act.TAKE_OUT,
     "charge": Act.CHARGE,
+    "send_person": Act.SEND_PERSON,
 }
 
 
@@ -78,7 +79,7 @@ def deed(
         )
     if act in (Act.PUT_IN, Act.TAKE_OUT):
         return KeptPromise(Intervention(act=act, object=promise.object), delay_s)
-    if act in (Act.UNCOVER, Act.CHARGE):
+    if act in (Act.UNCOVER, Act.CHARGE, Act.SEND_PERSON):
         return KeptPromise(Intervention(act=act), delay_s)
     if promise.object is None:
         return None

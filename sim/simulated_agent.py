@@ -4,7 +4,9 @@ from typing import Any
 
 from mend.robots.agent import Emit, EmitPicture
 from mend.robots.link.messages import (
+    Avoid,
     CommandBody,
+    Driven,
     Finished,
     Held,
     Hello,
@@ -33,7 +35,7 @@ _SEEN_AT_ONCE = (StepStarted, IssueDetected, Finished, Looked, Rejected, Held)
 _WITH_WORLD = (StepStarted, Finished, Holding, Intervened, IssueDetected)
 """Reports from which the world can be rebuilt; a look is one, too, that saw what it waited for."""
 
-_LET_HOLD_GO_ON = (Intervene, TakePicture)
+_LET_HOLD_GO_ON = (Intervene, TakePicture, Avoid)
 
 _EPSILON_S = 1e-9
 
@@ -72,6 +74,10 @@ class SimulatedAgent:
         """Where everything is now; the parts where they really are, where the world shows that."""
         poses, objects = self._robot.poses(), self._surroundings.shown_poses()
         return poses if objects is None else poses.model_copy(update={"objects": list(objects)})
+
+    def driven(self) -> Driven | None:
+        """What its base has driven so far, by its wheels; None without one."""
+        return self._robot.driven()
 
     def attach(self, emit: Emit, emit_picture: EmitPicture) -> None:
         """Say where reports and pictures go; called once, before anything else."""

@@ -65,6 +65,16 @@ class BehaviorNode(StrictModel):
         return self._text("message")
 
     @property
+    def person(self) -> str | None:
+        """Whom the behavior meets or escorts, if anybody."""
+        return self._text("person")
+
+    @property
+    def entrusted(self) -> str | None:
+        """What, or whom, one robot has with it from one leaf to the next."""
+        return self.item or self.person
+
+    @property
     def needs_help(self) -> bool:
         """Whether a helper has to lend a hand at the end of the behavior."""
         return self.parameters.get("needs_help") is True

@@ -40,6 +40,8 @@ class Act(StrEnum):
     """Bar a way of a building: lock its doors, or put things right across it."""
     CLEAR = "clear"
     """Unlock what was locked on a way, or take away what was put across it."""
+    SEND_PERSON = "send_person"
+    """Tell those who are to be escorted by robots that stand to come to them."""
 
 
 _WITHOUT_OBJECT = (
@@ -52,6 +54,7 @@ _WITHOUT_OBJECT = (
     Act.CHARGE,
     Act.BAR,
     Act.CLEAR,
+    Act.SEND_PERSON,
 )
 _OF_WAYS = (Act.BAR, Act.CLEAR)
 PlaceOfBuilding = Annotated[str, Field(min_length=1, max_length=130)]
@@ -61,12 +64,13 @@ PlaceOfBuilding = Annotated[str, Field(min_length=1, max_length=130)]
 class Intervention(StrictModel):
     """One thing that a person does in a world.
 
-    `object` is required by every act but `block`, `release`, `cover`, `uncover`, `charge`, `bar`,
-    `clear`, and `put_in` and `take_out`, which are about any robot that asks for it where they
-    name none; `place` (a name of the scene) by `place`; `to` by `move`. A `release` with both
-    `object` and `place` frees that place as well, one with an `object` alone puts that aside.
-    `manner` says how `steal` takes the object: `vanish` at once, or `pull` it out of the gripper by
-    force. `between`: the neighbouring places of a building whose way is to be barred, or cleared.
+    `object` is required by every act but `block`, `release`, `cover`, `uncover`, `charge`,
+    `send_person`, `bar`, `clear`, and `put_in` and `take_out`, which are about any robot that asks
+    for it where they name none; `place` (a name of the scene) by `place`; `to` by `move`. A
+    `release` with both `object` and `place` frees that place as well, one with an `object` alone
+    puts that aside. `manner` says how `steal` takes the object: `vanish` at once, or `pull` it out
+    of the gripper by force. `between`: the neighbouring places of a building whose way is to be
+    barred, or cleared.
     """
 
     act: Annotated[Act, Field(strict=False)]

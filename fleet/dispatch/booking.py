@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from mend.fleet.requests import STATUS, DeliverMessage, Escort, GoToRoom, RequestStatus, Transport
 from mend.fleet.scheduling.problem import Window
 from mend.fleet.scheduling.replanning.item_state import ItemState, TrackedItem
+from mend.fleet.scheduling.replanning.transfer_saving import TransferSaving
 
 AnyRequest = GoToRoom | DeliverMessage | Escort | Transport
 
@@ -126,7 +127,8 @@ class RequestView:
 class PlanChange:
     """Why the plan became another one, and whom that touches.
 
-    `said`: by request or robot, a sentence on what cannot be kept.
+    `said`: by request or robot, a sentence on what cannot be kept. `transfers`: the requests whose
+    things change robots now that did not before, or elsewhere, and what that saves.
     """
 
     number: int
@@ -135,3 +137,4 @@ class PlanChange:
     requests: tuple[str, ...]
     robots: tuple[str, ...]
     said: Mapping[str, str] = field(default_factory=dict)
+    transfers: Mapping[str, TransferSaving] = field(default_factory=dict)

@@ -27,7 +27,7 @@ class DispatchState:
 
     def __init__(self, building: Building, setting: FleetSetting) -> None:
         self.building, self.setting, self.policy = building, setting, setting.policy
-        self.ways = OpenWays(building.graph, setting.speed_m_s)
+        self.ways = OpenWays(building.graph, setting.speed_m_s, setting.starts_s)
         self.bookings: dict[str, Booking] = {}
         self.series: dict[str, Series] = {}
         self.under_way: dict[str, Leg] = {}

@@ -14,10 +14,11 @@ from mend.fleet.dispatch.booking_desk import BookingDesk
 from mend.fleet.dispatch.dispatch_state import DispatchState
 from mend.fleet.dispatch.giving_up import GivingUp
 from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd
-from mend.fleet.dispatch.legs_at_work import LegsAtWork
+from mend.fleet.dispatch.legs_at_work import LegsAtWork, leg_action
 from mend.fleet.dispatch.setting import FleetSetting
 from mend.fleet.dispatch.snapshot import DispatcherSnapshot, restore, snapshot_of
 from mend.fleet.dispatch.views import stops_by_booking, view_of
+from mend.fleet.requests import LegAction
 from mend.fleet.scheduling.replanning.events import (
     DoorClosed,
     Fetched,
@@ -28,12 +29,18 @@ from mend.fleet.scheduling.replanning.events import (
     WayOpen,
 )
 from mend.fleet.scheduling.replanning.item_state import ItemState
+from mend.fleet.scheduling.replanning.live_plan import NextStop
 from mend.fleet.scheduling.replanning.running_fleet import RunningFleet
 from mend.fleet.scheduling.tolerance import CHECK_S
 from mend.maps.building.building import Building
 
 REOPENS_EVERY_S = 300.0
 """What is closed for a while counts as open at multiples of this: plans know few such times."""
+_FOUND = {
+    Finding.BLOCKED: "the way blocked",
+    Finding.DOOR_CLOSED: "a closed door",
+    Finding.ELEVATOR_DEAD: "a dead elevator",
+}
 CLOSED_ITEMS = 64
 """So many items with which nothing remains to be done are forgotten at once."""
 
@@ -191,11 +198,12 @@ class Dispatcher:
         """
         self._advance(now_s)
         event = RobotMoved(robot, self.building.find(at))
-        self._state.apply(event, f"{robot} has made way", ())
+        self._state.apply(event, f"{robot} stands at {at} now", ())
         self._state.settle()
 
     def found(self, found: Found, now_s: float) -> None:
-        """A robot has found a way blocked, or a door closed, which counts for a while; or open.
+        """A robot has found a way blocked, a door closed, or an elevator dead, which counts for a
+        while; or open.
 
         Raises `ConflictError` where the places are no neighbours, or more changes than plans can
         know; `NotFoundError`.
@@ -209,7 +217,7 @@ class Dispatcher:
             until_s = self.now_s + self._state.policy.forget_s
             until_s = until_s if found.until_s is None else found.until_s
             until_s = REOPENS_EVERY_S * ceil(max(until_s, self.now_s + 1.0) / REOPENS_EVERY_S)
-            what = "a closed door" if found.finding is Finding.DOOR_CLOSED else "the way blocked"
+            what = _FOUND[found.finding]
             why = f"{by} found {what} between {a} and {b}, which counts until {until_s:g} s"
             self._state.apply(DoorClosed((a, b), until_s - self.now_s), why, ())
         self._state.settle()
@@ -259,6 +267,17 @@ class Dispatcher:
     def expected(self, name: str) -> Expected | None:
         """When it is begun and done; None where it is in no plan. Raises `NotFoundError`."""
         return self.view(name).expected
+
+    def stops(self) -> Mapping[str, Sequence[tuple[NextStop, LegAction]]]:
+        """What each robot is still to do, by its name, and what that is for its request."""
+        bookings, items = self._state.bookings, self._state.fleet.items
+        return {
+            robot: [
+                (each, leg_action(bookings[each.item].request, items[each.item], each.action))
+                for each in stops
+            ]
+            for robot, stops in self._state.fleet.stops().items()
+        }
 
     def wakes_s(self) -> float | None:
         """When `legs_to_begin` has to be asked again, if nothing happens before."""

@@ -150,7 +150,9 @@ def state_of(
     if tuple(each.name for each in snapshot.robots) != tuple(each.name for each in robots):
         raise UnreadableError("what was kept is of other robots than those of the fleet")
     for closing in snapshot.closed:
-        ways.close(closing.between, _or_inf(closing.until_s))
+        until_s = _or_inf(closing.until_s)
+        if ways.closed_until_s.get(frozenset(closing.between)) != until_s:
+            ways.close(closing.between, until_s)
     try:
         return FleetState(
             building,

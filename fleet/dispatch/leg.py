@@ -53,15 +53,19 @@ class LegEnd(StrictModel):
 
 
 class Finding(StrEnum):
-    """What a robot finds of a way."""
+    """What a robot finds of a way, or of an elevator."""
 
     BLOCKED = "blocked"
     DOOR_CLOSED = "door_closed"
+    ELEVATOR_DEAD = "elevator_dead"
     OPEN = "open"
 
 
 class Found(StrictModel):
-    """What was found between two neighbouring places, by whom, and until when it may last."""
+    """What was found between two neighbouring places, by whom, and until when it may last.
+
+    Of an elevator they are two of its stops.
+    """
 
     finding: Finding
     between: tuple[PlaceName, PlaceName]

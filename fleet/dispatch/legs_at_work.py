@@ -132,7 +132,7 @@ class LegsAtWork:
         return Leg(
             robot=robot,
             number=self._state.begun.get(robot, 0) + 1,
-            action=_leg_action(request, item, stop.action),
+            action=leg_action(request, item, stop.action),
             place=stop.place,
             booking=stop.item,
             request=request,
@@ -162,7 +162,8 @@ class LegsAtWork:
         return True
 
 
-def _leg_action(request: AnyRequest, item: TrackedItem, action: Action) -> LegAction:
+def leg_action(request: AnyRequest, item: TrackedItem, action: Action) -> LegAction:
+    """What a stop of the plan is for the request of its item."""
     match action:
         case Action.GIVE:
             return LegAction.GIVE

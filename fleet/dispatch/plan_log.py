@@ -6,6 +6,7 @@ from contextlib import contextmanager
 
 from mend.fleet.dispatch.booking import PlanChange
 from mend.fleet.scheduling.replanning.running_fleet import Outcome, RunningFleet
+from mend.fleet.scheduling.schedule import Action
 
 Doing = tuple[str, str]
 """An item, and what is done with it."""
@@ -54,8 +55,16 @@ class PlanLog:
         touched |= set(_moved(before, after))
         if robots or said or touched:
             self.count += 1
+            changing = _given(after) - _given(before)
+            transfers = fleet().transfer_savings(sorted({item for _, item in changing}))
             change = PlanChange(
-                self.count, fleet().now_s, reason, tuple(sorted(touched)), tuple(robots), said
+                self.count,
+                fleet().now_s,
+                reason,
+                tuple(sorted(touched)),
+                tuple(robots),
+                said,
+                transfers,
             )
             self._changes.append(change)
 
@@ -74,3 +83,13 @@ def _moved(before: dict[str, list[Doing]], after: dict[str, list[Doing]]) -> Ite
         for each in (before, after)
     )
     yield from (item for _, item, _ in was ^ now)
+
+
+def _given(orders: dict[str, list[Doing]]) -> set[tuple[str, str]]:
+    """Which robot leaves which item for another."""
+    return {
+        (robot, item)
+        for robot, doings in orders.items()
+        for item, action in doings
+        if action == Action.GIVE
+    }

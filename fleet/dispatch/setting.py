@@ -61,17 +61,20 @@ class Policy(StrictModel):
 class FleetSetting(StrictModel):
     """The fleet of a building.
 
-    `speed_m_s`: how fast a robot of speed 1 drives; `handling_s`: what it takes to give or take
-    something, or to tell a message; `transfer_s`: to leave an item for another robot at one of the
-    `transfer_places`, or to take it from there. `per_metre` and `per_second` weigh what is driven
-    against how late everything is done.
+    `speed_m_s`: how fast a robot of speed 1 drives, and `starts_s` what it takes besides to speed
+    up, to brake and to turn: `benchmarks/drive_times.py` compares that with robots that drive.
+    `handling_s`: what it takes to give or take something, or to tell a message; `transfer_s`: to
+    leave an item for another robot at one of the `transfer_places`, or to take it from there.
+    `per_metre` and `per_second` weigh what is driven against how late everything is done: a metre
+    takes a robot a second, which counts as much as one that somebody waits.
     """
 
     robots: Annotated[tuple[ServiceRobot, ...], Field(min_length=1)]
-    speed_m_s: Speed = 0.8
+    speed_m_s: Speed = 1.0
+    starts_s: Handling = 1.0
     handling_s: Handling = 30.0
     transfer_places: tuple[PlaceName, ...] = ()
     transfer_s: Handling = 20.0
     per_metre: Weight = 1.0
-    per_second: Weight = 0.1
+    per_second: Weight = 1.0
     policy: Policy = Policy()

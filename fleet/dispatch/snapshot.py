@@ -11,6 +11,7 @@ from mend.fleet.scheduling.checker import ScheduleError
 from mend.fleet.scheduling.replanning.events import EventError
 from mend.fleet.scheduling.replanning.residual_problem import Building
 from mend.fleet.scheduling.replanning.running_fleet import RunningFleet
+from mend.fleet.scheduling.replanning.transfer_saving import TransferSaving
 
 
 class KeptBooking(StrictModel):
@@ -61,12 +62,13 @@ class KeptChange(StrictModel):
     requests: tuple[str, ...]
     robots: tuple[str, ...]
     said: dict[str, str]
+    transfers: dict[str, TransferSaving] = {}
 
     @classmethod
     def of(cls, change: PlanChange) -> "KeptChange":
         """The same as a document."""
         values = {name: getattr(change, name) for name in cls.model_fields}
-        return cls(**{**values, "said": dict(change.said)})
+        return cls(**{**values, "said": dict(change.said), "transfers": dict(change.transfers)})
 
     def change(self) -> PlanChange:
         """The same again."""

@@ -13,10 +13,15 @@ MAX_CHANGES = 48
 
 
 def travel_in(
-    graph: NavigationGraph, speed_m_s: float = 1.0, places: Sequence[str] | None = None
+    graph: NavigationGraph,
+    speed_m_s: float = 1.0,
+    places: Sequence[str] | None = None,
+    *,
+    starts_s: float = 0.0,
 ) -> Travel:
     """Travel between some places of a graph, by number in this order; between all if None.
 
+    `starts_s` comes on top of each trip, however long: to speed up, brake and turn.
     Raises `TravelError` where doors change more often than `MAX_CHANGES` times.
     """
     names = [place.name for place in graph.places] if places is None else places
@@ -32,6 +37,7 @@ def travel_in(
     for from_s, until_s, passable in _widest_spans(graph, [0.0, *changes_s, inf]):
         if passable not in matrices:
             distance_m, time_s = graph.shortest(speed_m_s, from_s=from_s, until_s=until_s)
+            time_s += starts_s * (1.0 - np.eye(len(time_s)))
             matrices[passable] = (distance_m[grid], time_s[grid])
         epochs.append(Epoch(from_s, until_s, *matrices[passable]))
     if len(epochs) == 1:

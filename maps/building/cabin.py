@@ -14,10 +14,17 @@ Point = tuple[float, float]
 
 CABIN_M = 0.6
 """So far is a cabin's wall from its middle, its stop, on all eight sides."""
+CABIN_DOOR_S = 2.0
+"""Its door takes so long to open, and to shut."""
 _SIDES = 8
-_CORNERS = np.array(
-    [(math.cos(turn), math.sin(turn)) for turn in (np.arange(_SIDES) + 0.5) * math.tau / _SIDES]
-) * (CABIN_M / math.cos(math.pi / _SIDES))
+CORNER_M = CABIN_M / math.cos(math.pi / _SIDES)
+"""And so far its corners are."""
+_CORNERS = (
+    np.array(
+        [(math.cos(turn), math.sin(turn)) for turn in (np.arange(_SIDES) + 0.5) * math.tau / _SIDES]
+    )
+    * CORNER_M
+)
 _WAITS_M = (1.2, 1.6, 2.0, 2.5, 3.0)
 """Who waits stands so far from the stop, the first that there is room for."""
 _DIRECTIONS = 24

@@ -25,6 +25,7 @@ from mend.robots.execution.execution_state import ExecutionState
 from mend.robots.execution.monitor import AnyMonitor, for_view
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
+    Avoid,
     Look,
     Looked,
     PoseLayout,
@@ -76,6 +77,8 @@ class ArmSubsystem:
         self._shown = ShownArm(body, catalogue, self._perception)
 
     keeps_clear = False
+    driven = None
+    avoids_ways = False
 
     @property
     def behaviors(self) -> Collection[str]:
@@ -99,6 +102,9 @@ class ArmSubsystem:
             swing=None if swing is None else SwingLimits(pivot=swing.pivot, tool=swing.tool),
             torso=list(room.torso),
         )
+
+    def avoid(self, told: Avoid) -> None:
+        """It goes nowhere."""
 
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> ArmExecution:
         """What a start command asks for, not begun. Raises `CommandError`."""

@@ -1,6 +1,7 @@
 """A base that drives: sending it on its way, a control cycle at a time."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,16 +10,21 @@ from mend.maps.building.cabin import CABIN_M
 from mend.robots.base.basket import Basket, LoadSense, NoBasket
 from mend.robots.base.battery import Battery, MainsPower
 from mend.robots.base.body import BaseBody, BasePose
+from mend.robots.base.closed_ways import Closed, ClosedWays
+from mend.robots.base.companion import Companion, Company, NoCompanion
+from mend.robots.base.driven_way import DrivenWay
 from mend.robots.base.elevators import Elevators, NoElevators
 from mend.robots.base.jumps import Jumps
 from mend.robots.base.motion.surroundings import Seen, Surroundings, hidden_behind
 from mend.robots.base.motion.warming_up import warm_up
 from mend.robots.base.motion.way_follower import WayFollower
-from mend.robots.base.ways import Ways
+from mend.robots.base.way_ahead import WayAhead
+from mend.robots.base.ways import Ride, Ways
 from mend.robots.base.whereabouts import AlwaysKnown, Whereabouts
 from mend.robots.execution.effector import Effector
+from mend.robots.link.messages import Driven
 
-_SLOW_M_S, _SLOW_RAD_S = 0.05, 0.1
+SLOW_M_S, SLOW_RAD_S = 0.05, 0.1
 _SEES_OUT = 0.05
 """More of its beams lead out of an open cabin than fail to come back."""
 _BEHIND_M = 0.2
@@ -48,6 +54,7 @@ class Base(Effector[BaseBody]):
         whereabouts: Whereabouts | None = None,
         basket: Basket | None = None,
         battery: Battery | None = None,
+        companion: Companion | None = None,
     ) -> None:
         """`ways` says which points to pass to a goal, `whereabouts` if it may be lost."""
         warm_up()
@@ -57,36 +64,43 @@ class Base(Effector[BaseBody]):
         self.basket = basket or NoBasket()
         self.battery: Battery = battery or MainsPower()
         self.load = LoadSense(self.basket)
+        self.companion: Companion = companion or NoCompanion()
+        self.company = Company(self.companion, body.time_s)
         self.whereabouts: Whereabouts = whereabouts or AlwaysKnown()
+        self.closed = ClosedWays()
         self.at_rest = True
         self._speed = 1.0
         self._surroundings = Surroundings()
         self._jumps = Jumps()
+        self._way = DrivenWay()
         self._following: WayFollower | None = None
         self._barred: WayFollower | None = None
+        self._barrier: tuple[str, str] | None = None
 
     def start(self, to: BasePose, speed: float) -> None:
         """Begin to drive to a pose, at `speed` in (0, 1] of its best. Raises `CommandError`."""
         self._following, self._speed = self._follower(to), speed
-        self._barred = None
+        self._barred = self._barrier = None
         self.at_rest = False
 
     def jumps(self) -> bool:
         """Whether it now believes to be elsewhere than where its way led it; once a cycle."""
         return self._jumps.note(self.body.pose(), self.body.odometry())
 
-    def drive_on(self) -> None:
+    def drive_on(self, *, waits: bool = False) -> None:
         """Choose how to move in the next control cycle; once a cycle, after `start`.
 
-        Who is lost stands still until it knows where it is.
+        Who is lost stands still until it knows where it is, and who `waits` until it does not.
         """
         assert self._following is not None, "it was started"
         here, now = self.body.pose(), self.body.velocity()
         seen = self._look_around(here)
-        if self.whereabouts.is_lost:
+        if self.whereabouts.is_lost or waits:
             self.body.stop()
             return
         self.body.move(self._following.choose(here, now, seen, self.pace))
+        if self._following.barred and self.slow:
+            self._way.stood(self.body.control_period_s)
 
     def stop(self) -> None:
         """Brake; it is on no way any more."""
@@ -109,7 +123,11 @@ class Base(Effector[BaseBody]):
     def slow(self) -> bool:
         """Whether it stands, or is about to."""
         now = self.body.velocity()
-        return now.speed_m_s < _SLOW_M_S and abs(now.turn_rad_s) < _SLOW_RAD_S
+        return now.speed_m_s < SLOW_M_S and abs(now.turn_rad_s) < SLOW_RAD_S
+
+    def driven(self) -> Driven:
+        """What it has driven so far."""
+        return self._way.so_far(self.body.odometry())
 
     @property
     def following(self) -> WayFollower | None:
@@ -135,23 +153,71 @@ class Base(Effector[BaseBody]):
             between=self.ways.lane_at(here, met),
         )
 
+    def bar(self, between: tuple[str, str]) -> None:
+        """Remember that what leaves it no way on is between these places, the one behind first."""
+        self._barrier = between
+        for lane in self.ways.together(between):
+            self.closed.bar(lane, between[0], self.body.time_s())
+
+    def rode(self, between: tuple[str, str]) -> bool:
+        """It has ridden an elevator; whether that counted as closed."""
+        lanes = self.ways.together(between)
+        closed = not self.closed.doubtful(self.body.time_s()).keys().isdisjoint(lanes)
+        for lane in lanes:
+            self.closed.passed(lane)
+        return closed
+
+    def rides_round(self, ride: Ride, to: BasePose) -> Sequence[Ride]:
+        """The rides to a pose that take no elevator that is closed, nor this one; none if none do.
+
+        Raises `CommandError`.
+        """
+        shut = {**self._closed_now, **dict.fromkeys(self.ways.together(ride.between))}
+        rides = self.ways.rides(self.body.pose(), to, shut)
+        return () if any(frozenset(each.between) in shut for each in rides) else rides
+
+    def is_closed(self, ride: Ride) -> bool:
+        """Whether its elevator counts as closed."""
+        return frozenset(ride.between) in self._closed_now
+
+    def round_takes_s(self, to: BasePose) -> float:
+        """How much longer than the way that is barred another one takes; infinite without one.
+
+        Raises `CommandError`.
+        """
+        here = self.body.pose()
+        barred = self._following or self._barred
+        if barred is None or not self.ways.leads_round(here, to, self._closed_now):
+            return math.inf
+        longer_m = self._follower(to).length_m - barred.ahead_m
+        return max(0.0, longer_m) / self.body.limits.speed_m_s
+
     def sees_out(self) -> bool:
         """Whether it sees farther than the walls of a cabin in which it would be."""
         out = self.body.scan().ranges_m > 2 * CABIN_M
         return float(out.mean()) > _SEES_OUT
 
-    def gets_to(self, to: BasePose) -> bool:
+    def way_to(self, to: BasePose, patience_s: float) -> WayAhead:
         """Whether what is seen leaves a way on to a pose. Raises `CommandError`.
 
         Where it stopped because it did not get on, it is the way there that counts: another one
-        might lead back first, where of course nothing is in the way.
+        might lead back first, where of course nothing is in the way. One that leads round and
+        takes longer by `patience_s` at most is taken.
         """
         here = self.body.pose()
         points = self._look_around(here).points
         barred = self._barred
-        if barred is not None and barred.goal == to and not barred.gets_on(here, points):
-            return False
-        return self._follower(to).gets_on(here, points)
+        if barred is None or barred.goal != to:
+            return WayAhead.FREE if self._follower(to).gets_on(here, points) else WayAhead.BARRED
+        if barred.gets_on(here, points):
+            if self._barrier is not None:
+                self.closed.free(frozenset(self._barrier))
+            gets_on = self._follower(to).gets_on(here, points)
+            return WayAhead.FREE if gets_on else WayAhead.BARRED
+        if self._barrier is None or self.round_takes_s(to) > patience_s:
+            return WayAhead.BARRED
+        gets_on = self._follower(to).gets_on(here, points)
+        return WayAhead.ROUND if gets_on else WayAhead.BARRED
 
     # --- Within -------------------------------------------------------------------------------
 
@@ -160,8 +226,12 @@ class Base(Effector[BaseBody]):
 
     def _follower(self, to: BasePose) -> WayFollower:
         body, here = self.body, self.body.pose()
-        way = [(here.x, here.y), *self.ways.path(here, to)]
+        way = [(here.x, here.y), *self.ways.path(here, to, self._closed_now)]
         return WayFollower(body.limits, body.radius_m, body.control_period_s, way, to)
+
+    @property
+    def _closed_now(self) -> Closed:
+        return self.closed.at(self.body.time_s())
 
     def _look_around(self, here: BasePose) -> Seen:
         """What is seen and remembered, and walls that it hides, in the frame of `here`.
@@ -170,6 +240,7 @@ class Base(Effector[BaseBody]):
         moves nothing that it sees around it.
         """
         wheels, scan = self.body.odometry(), self.body.scan()
+        self._way.note(wheels)
         seen = self._surroundings.take(scan, wheels, self.body.time_s())
         seen = seen.in_frame_of(wheels).seen_from(here)
         return seen.with_still(hidden_behind(scan, here, self.ways.walls(here)))

@@ -11,8 +11,8 @@ class Elevators(Protocol):
     What people call is asked for too: whoever helps reads on the robot where it wants to go.
     """
 
-    def ask(self, ride: Ride) -> None:
-        """Want this ride; asking again changes nothing."""
+    def ask(self, ride: Ride, *, stay_open: bool = False) -> None:
+        """Want this ride; asking again changes nothing but whether the cabin is to `stay_open`."""
         ...
 
     def withdraw(self) -> None:
@@ -27,7 +27,7 @@ class Elevators(Protocol):
 class NoElevators:
     """Where there are none."""
 
-    def ask(self, ride: Ride) -> None:
+    def ask(self, ride: Ride, *, stay_open: bool = False) -> None:
         """Nobody hears it."""
 
     def withdraw(self) -> None:

@@ -1,7 +1,7 @@
 """Ways through a building: along its lanes, and in its elevators, by what the robot's map says."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -13,6 +13,7 @@ from mend.maps.building.clearance import clearance_m
 from mend.maps.building.crossing import crossed_by
 from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 from mend.robots.base.body import BasePose
+from mend.robots.base.closed_ways import NO_WAYS, Closed, Lane
 from mend.robots.base.motion.surroundings import NOTHING, Points
 from mend.robots.base.ways import Ride
 from mend.robots.execution.command_error import CommandError
@@ -23,8 +24,12 @@ Point = tuple[float, float]
 _AROUND_M, _EVERY_M = 6.0, 0.15
 _ON_LANE_M = 0.6
 """Who is farther from a lane is not on it."""
-_THROUGH_CABIN_S = 1e6
-"""No way leads through a cabin where there is any other."""
+_ASIDE_M = 0.25
+"""So far from the middle of a cabin a robot stands with somebody beside it."""
+_CLOSED_S = 1e5
+"""No way leads by what is closed where there is any other."""
+_THROUGH_CABIN_S = 1e10
+"""No way leads through a cabin where there is any other, whatever else is closed."""
 
 
 class FloorWays:
@@ -35,6 +40,8 @@ class FloorWays:
     is. Doors are taken to be open: the robot will see.
     """
 
+    has_places = True
+
     def __init__(
         self, building: Building, frame: Frame, speed_m_s: float, needs_m: float, turn: int = 0
     ) -> None:
@@ -44,6 +51,7 @@ class FloorWays:
         self._needs_m = needs_m
         self._turn = turn
         self._walls: dict[str, Points] = {}
+        self._waiting: dict[tuple[str, Point], Sequence[Point]] = {}
         self._stops = _stops(building)
         self._cabins = [
             (floor, stop_of(building, elevator, floor))
@@ -51,27 +59,35 @@ class FloorWays:
             for floor in each.stops
         ]
         self._all = _without_hours(building, self._stops, lambda _: True)
+        self._places = {each.name: each for each in self._all.places}
         self._graphs = {
             floor: _without_hours(building, self._stops, _is_on(floor)) for floor in building.floors
         }
 
-    def path(self, here: BasePose, to: BasePose) -> Sequence[Point]:
+    def path(self, here: BasePose, to: BasePose, closed: Closed = NO_WAYS) -> Sequence[Point]:
         """The points to pass, the last one the goal's.
 
         Raises `CommandError` for a goal on another floor, or that no lane leads to.
         """
-        floor, goal_floor = self._floor(here), self._floor(to)
-        if floor != goal_floor:
-            raise CommandError(f"the way from {floor} to {goal_floor} needs an elevator")
-        start, goal = self._on_map(here), self._on_map(to)
-        points = [start, *self._along_lanes(floor, start, goal), goal]
+        floor, start, goal = self._on_one_floor(here, to)
+        lanes = self._along_lanes(floor, start, goal, closed)
+        points = [start, *((each.x_m, each.y_m) for each in lanes), goal]
         if self._is_wide(floor, points[0], points[2]):
             del points[1]
         if len(points) > 2 and self._is_wide(floor, points[-3], points[-1]):
             del points[-2]
+        points = self._round_cabin(floor, self._round_cabin(floor, points)[::-1])[::-1]
         return [self._frame.to_robot(*each) for each in points[1:]]
 
-    def rides(self, here: BasePose, to: BasePose) -> Sequence[Ride]:
+    def leads_round(self, here: BasePose, to: BasePose, closed: Closed) -> bool:
+        """Whether a way leads to a pose on the same floor by nothing that is closed.
+
+        Raises `CommandError` as `path` does.
+        """
+        lanes = self._along_lanes(*self._on_one_floor(here, to), closed)
+        return not any(frozenset((a.name, b.name)) in closed for a, b in pairwise(lanes))
+
+    def rides(self, here: BasePose, to: BasePose, closed: Closed = NO_WAYS) -> Sequence[Ride]:
         """The rides between two poses, in the order in which they are taken.
 
         Raises `CommandError` where there is no way.
@@ -80,9 +96,11 @@ class FloorWays:
         if floor == goal_floor:
             return ()
         start, goal = self._on_map(here), self._on_map(to)
-        path = _named_path(
-            self._all, self._nearest(floor, start), self._nearest(goal_floor, goal), self._speed_m_s
-        )
+        in_cabin = any(n == floor and math.dist(at, start) < CABIN_M for n, at in self._cabins)
+        # Who stands before one elevator may take another.
+        begin = self._first(floor, start, closed, () if in_cabin else self._stops)
+        end = self._nearest(goal_floor, goal)
+        path = _named_path(_kept_off(self._all, closed), begin, end, self._speed_m_s)
         rides = []
         for number, (a, b) in enumerate(pairwise(path)):
             if a.floor != b.floor:
@@ -146,6 +164,17 @@ class FloorWays:
                 nearest_m, found = off_m, (way.a, way.b) if along < 0.0 else (way.b, way.a)
         return found
 
+    def together(self, between: tuple[str, str]) -> Collection[Lane]:
+        """The ways that are closed with one: of an elevator all its rides."""
+        return self._all.together(between)
+
+    def along(self, lane: Lane, here: BasePose) -> Mapping[str, float] | None:
+        """How far a pose on a lane is from each of its ends (m); None beside it."""
+        floor = self.floor(here)
+        if floor is None or not all(each.startswith(f"{floor}/") for each in lane):
+            return None
+        return self._ends_m(lane, self._on_map(here))
+
     # --- Within -------------------------------------------------------------------------------
 
     def _ride(self, begin: str, end: str, after: Place | None) -> Ride:
@@ -154,7 +183,7 @@ class FloorWays:
         elevator = self._stops[begin]
         stop = stop_of(self._building, elevator, from_floor)
         stop_there = stop_of(self._building, elevator, to_floor)
-        waits = waiting_points(self._building.floors[from_floor], stop, self._needs_m)
+        waits = self._waits(from_floor, stop)
         if not waits:
             raise CommandError(f"there is no room to wait for {elevator} on {from_floor}")
         out = self._outside(to_floor, stop_there) if after is None else (after.x_m, after.y_m)
@@ -168,13 +197,31 @@ class FloorWays:
             there=self._pose(to_floor, stop_there, out),
             out_at=self._pose(to_floor, out, out),
             called=self._building.document.elevators[elevator].called_by is Caller.ROBOTS,
+            between=(begin, end),
+            aside=self._aside(from_floor, stop, wait),
         )
 
+    def _aside(self, floor: str, stop: Point, wait: Point) -> BasePose | None:
+        """Beside the middle of a cabin; None where walls leave no room on both sides."""
+        away_m, walls = math.dist(stop, wait), self._building.floors[floor].wall_segments
+        off = _ASIDE_M * (wait[1] - stop[1]) / away_m, _ASIDE_M * (stop[0] - wait[0]) / away_m
+        at, other = ((stop[0] + n * off[0], stop[1] + n * off[1]) for n in (1.0, -1.0))
+        if clearance_m(at, other, walls) < self._needs_m:
+            return None
+        return self._pose(floor, at, (at[0] + wait[0] - stop[0], at[1] + wait[1] - stop[1]))
+
     def _outside(self, floor: str, stop: Point) -> Point:
-        waits = waiting_points(self._building.floors[floor], stop, self._needs_m)
+        waits = self._waits(floor, stop)
         if not waits:
             raise CommandError(f"there is no room to get out on {floor}")
         return waits[self._turn % len(waits)]
+
+    def _waits(self, floor: str, stop: Point) -> Sequence[Point]:
+        """Where one may wait for a cabin, computed once."""
+        if (floor, stop) not in self._waiting:
+            found = waiting_points(self._building.floors[floor], stop, self._needs_m)
+            self._waiting[floor, stop] = found
+        return self._waiting[floor, stop]
 
     def _pose(self, floor: str, at: Point, facing: Point) -> BasePose:
         x, y = self._frame.to_robot(*at)
@@ -182,21 +229,54 @@ class FloorWays:
         yaw = math.atan2(to_y - y, to_x - x)
         return BasePose(x, y, yaw, self._building.floors[floor].height)
 
-    def _along_lanes(self, floor: str, start: Point, goal: Point) -> list[Point]:
+    def _on_one_floor(self, here: BasePose, to: BasePose) -> tuple[str, Point, Point]:
+        """The floor, and where both are on it. Raises `CommandError` where it is not one."""
+        floor, goal_floor = self._floor(here), self._floor(to)
+        if floor != goal_floor:
+            raise CommandError(f"the way from {floor} to {goal_floor} needs an elevator")
+        return floor, self._on_map(here), self._on_map(to)
+
+    def _along_lanes(
+        self, floor: str, start: Point, goal: Point, closed: Closed
+    ) -> Sequence[Place]:
         """From the place that is nearest to the start to the one nearest to the goal."""
-        first, last = (self._nearest(floor, each) for each in (start, goal))
-        places = _named_path(self._graphs[floor], first, last, self._speed_m_s)
+        first, last = self._first(floor, start, closed), self._nearest(floor, goal)
+        graph = _kept_off(self._graphs[floor], closed)
+        places = _named_path(graph, first, last, self._speed_m_s)
         through = [each.name for each in places[1:-1] if each.name in self._stops]
         if through:
             raise CommandError(f"no lane leads from {first} to {last} but through {through[0]}")
-        return [(each.x_m, each.y_m) for each in places]
+        return places
 
-    def _nearest(self, floor: str, point: Point) -> str:
-        """The nearest place that no wall is before. Raises `CommandError`."""
+    def _first(self, floor: str, start: Point, closed: Closed, but: Collection[str] = ()) -> str:
+        """The place that a way begins with: of a lane that was found barred, the one before that.
+
+        Raises `CommandError`.
+        """
+        for lane, origin in closed.items():
+            if origin is not None and origin.startswith(f"{floor}/"):
+                ends = self._ends_m(lane, start)
+                beyond = next(iter(lane - {origin}), origin)
+                if ends is not None and ends[beyond] > _ON_LANE_M:
+                    return origin
+        return self._nearest(floor, start, but)
+
+    def _ends_m(self, lane: Lane, point: Point) -> Mapping[str, float] | None:
+        """How far a point on a lane is from each of its ends; None beside it."""
+        places = [self._places[each] for each in lane if each in self._places]
+        if len(places) != 2:
+            return None
+        (x0, y0), (x1, y1) = ((each.x_m, each.y_m) for each in places)
+        if clearance_m(point, point, np.array([[x0, y0, x1, y1]])) >= _ON_LANE_M:
+            return None
+        return {each.name: _away_m(each, point) for each in places}
+
+    def _nearest(self, floor: str, point: Point, but: Collection[str] = ()) -> str:
+        """The nearest place that no wall is before, `but` these. Raises `CommandError`."""
         places, walls = self._graphs[floor].places, self._building.floors[floor].wall_segments
         for place in sorted(places, key=lambda each: _away_m(each, point)):
             way = np.array([*point, place.x_m, place.y_m])
-            if not len(crossed_by(way, walls)):
+            if place.name not in but and not len(crossed_by(way, walls)):
                 return place.name
         raise CommandError(f"there are walls all round ({point[0]:.2f}, {point[1]:.2f}) on {floor}")
 
@@ -212,6 +292,25 @@ class FloorWays:
             for name, stop in self._cabins
             if name == floor
         )
+
+    def _round_cabin(self, floor: str, points: list[Point]) -> list[Point]:
+        """A way without the cabin through which it begins, from where one waits for that.
+
+        It leads to the lane at the farthest point from which there is room to do so.
+        """
+        if len(points) < 3 or not self._is_beside_cabin(floor, points[0], points[1]):
+            return points
+        start, stop, after = points[:3]
+        count = max(2, math.ceil(math.dist(stop, after) / _EVERY_M))
+        for x, y in np.linspace(after, stop, count)[:-1].tolist():
+            if self._is_wide(floor, start, (x, y)):
+                return [start, (x, y), *points[2:]]
+        return points
+
+    def _is_beside_cabin(self, floor: str, at: Point, stop: Point) -> bool:
+        """Whether a point is a cabin's stop, and another one outside that."""
+        stops = (each for name, each in self._cabins if name == floor)
+        return math.dist(at, stop) >= CABIN_M and any(math.dist(e, stop) < 1e-6 for e in stops)
 
     def _floor(self, pose: BasePose) -> str:
         floor = self._building.floor_at(pose.z)
@@ -259,6 +358,19 @@ def _without_hours(
     graph = building.graph
     ways = [plain(each) for each in graph.ways if among(each.a) and among(each.b)]
     return NavigationGraph([each for each in graph.places if among(each.name)], ways)
+
+
+def _kept_off(graph: NavigationGraph, closed: Closed) -> NavigationGraph:
+    """A graph in which what is closed takes longer than all that is not."""
+    if not closed:
+        return graph
+
+    def now(way: Way) -> Way:
+        if frozenset((way.a, way.b)) not in closed:
+            return way
+        return replace(way, delay_s=way.delay_s + _CLOSED_S)
+
+    return NavigationGraph(graph.places, map(now, graph.ways))
 
 
 def _named_path(graph: NavigationGraph, first: str, last: str, speed_m_s: float) -> Sequence[Place]:

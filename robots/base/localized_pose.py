@@ -54,6 +54,7 @@ class LocalizedPose:
         self._localizer.reset(at, _ANYWHERE if lost else None)
         self._at, self._from = np.array(at, np.float64), np.array(odometry, np.float64)
         self.is_lost = lost
+        self._covariance: Sequence[float] | None = None
         self._time_s = self._lost_since_s = self._updated_s = _NOT_YET_S
         self._searches_s = math.inf
         self._newest: Scan | None = None
@@ -68,6 +69,10 @@ class LocalizedPose:
     def lost_s(self) -> float:
         """How long it has been lost, at the newest scan."""
         return self._time_s - self._lost_since_s if self.is_lost else 0.0
+
+    def covariance(self) -> Sequence[float] | None:
+        """That of its last estimate; None before the first, and while it is lost."""
+        return None if self.is_lost else self._covariance
 
     def guesses(self) -> Sequence[str]:
         """What the places are called that it may be at, likeliest first, each once."""
@@ -119,6 +124,7 @@ class LocalizedPose:
         expected = compose(self._at, moved)
         estimate = self._localizer.update(moved, self._newest)
         is_lost, at = estimate.is_lost, estimate.pose.copy()
+        self._covariance = estimate.covariance[[0, 0, 1], [0, 1, 1]].tolist()
         if not (is_lost or self.is_lost) and _is_elsewhere(expected, at):
             # It has only found a place that it likes better: neither is sure.
             self._localizer.get_lost()

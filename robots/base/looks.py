@@ -1,9 +1,10 @@
-"""The looks of a base: where it is, whether its way is free, and what its basket weighs."""
+"""The looks of a base: where it is, if its way is free, what its basket weighs, who is near."""
 
 from collections.abc import Callable
 
 from mend.robots.base.base import Base
 from mend.robots.base.behaviors.execution import BaseExecution
+from mend.robots.base.way_ahead import WayAhead
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.routine import Routine
@@ -13,12 +14,24 @@ _PERIOD_S = 0.5
 
 
 def answer(
-    base: Base, command: str, fulfilled: bool | None, felt: FeltLoad | None = None
+    base: Base,
+    command: str,
+    fulfilled: bool | None,
+    felt: FeltLoad | None = None,
+    *,
+    led_round: bool = False,
 ) -> Looked:
     """Where the base is; it sees no objects, and judges no results."""
     here = base.body.pose()
     at = Position(x=here.x, y=here.y, z=here.z)
-    return Looked(command=command, objects={}, gripper=at, fulfilled=fulfilled, felt=felt)
+    return Looked(
+        command=command,
+        objects={},
+        gripper=at,
+        fulfilled=fulfilled,
+        felt=felt,
+        led_round=led_round,
+    )
 
 
 def look_as_told(
@@ -31,22 +44,25 @@ def look_as_told(
         return _feel(base, command, look.within_s, held)
     if look.expect == "charged":
         return _until(base, command, look.within_s, lambda: base.battery.charging)
+    if look.expect == "accompanied":
+        return _until(base, command, look.within_s, lambda: _is_accompanied(held))
     if look.expect not in (None, "way_clear"):
         raise CommandError(f"a base that drives cannot look for '{look.expect}'")
 
-    def way_is_clear() -> bool:
-        return not isinstance(held, BaseExecution) or held.way_is_clear()
+    return _look_ahead(base, command, look, held)
 
-    def routine() -> Routine[Looked]:
-        end_s = base.body.time_s() + look.within_s
-        while look.expect is not None and not way_is_clear():
-            left_s = end_s - base.body.time_s()
-            if left_s <= 1e-9:
-                return answer(base, command, fulfilled=False)
-            yield from base.wait(min(_PERIOD_S, left_s))
+
+def _look_ahead(base: Base, command: str, look: Look, held: AnyExecution | None) -> Routine[Looked]:
+    """Where it is, or whether it gets on, and whether that is because another way leads round."""
+    if look.expect is None or not isinstance(held, BaseExecution):
         return answer(base, command, None if look.expect is None else True)
-
-    return routine()
+    end_s = base.body.time_s() + look.within_s
+    while (ahead := held.way_ahead()) is WayAhead.BARRED:
+        left_s = end_s - base.body.time_s()
+        if left_s <= 1e-9:
+            return answer(base, command, fulfilled=False)
+        yield from base.wait(min(_PERIOD_S, left_s))
+    return answer(base, command, fulfilled=True, led_round=ahead is WayAhead.ROUND)
 
 
 def _feel(base: Base, command: str, within_s: float, held: AnyExecution | None) -> Routine[Looked]:
@@ -81,6 +97,10 @@ def _until(base: Base, command: str, within_s: float, so: Callable[[], bool]) ->
             return answer(base, command, fulfilled=False)
         yield from base.wait(min(_PERIOD_S, left_s))
     return answer(base, command, fulfilled=True)
+
+
+def _is_accompanied(held: AnyExecution | None) -> bool:
+    return isinstance(held, BaseExecution) and held.accompanied()
 
 
 def _look_there(base: Base, command: str, guess: str) -> Routine[Looked]:

@@ -15,6 +15,7 @@ from mend.robots.base.behaviors.behavior import (
 )
 from mend.robots.base.behaviors.execution import BaseExecution
 from mend.robots.base.body import BaseBody, BasePose
+from mend.robots.base.companion import Companion
 from mend.robots.base.elevators import Elevators
 from mend.robots.base.looks import answer, look_as_told
 from mend.robots.base.monitors.monitor import BaseView
@@ -28,6 +29,8 @@ from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.monitor import AnyMonitor, for_view
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
+    Avoid,
+    Driven,
     Location,
     Look,
     Looked,
@@ -56,12 +59,15 @@ class BaseSubsystem:
         whereabouts: Whereabouts | None = None,
         basket: Basket | None = None,
         battery: Battery | None = None,
+        companion: Companion | None = None,
     ) -> None:
         """It takes those of bases. Without `ways` it goes straight to each goal.
 
-        Without `whereabouts` it always believes its body's pose, without `basket` it has none.
+        Without `whereabouts` it always believes its body's pose, without `basket` it has none, and
+        without `companion` it escorts nobody.
         """
-        self.effector = Base(body, ways or StraightWays(), elevators, whereabouts, basket, battery)
+        ways = ways or StraightWays()
+        self.effector = Base(body, ways, elevators, whereabouts, basket, battery, companion)
         self._places = {name: _pose(each) for name, each in catalogue.places.items()}
         self._behaviors = of_kind(behaviors, BaseBehavior)  # type: ignore[type-abstract]
         self._monitors = for_view(monitors.values(), BaseView)
@@ -69,6 +75,20 @@ class BaseSubsystem:
     @property
     def behaviors(self) -> Collection[str]:
         return self._behaviors
+
+    @property
+    def driven(self) -> Driven:
+        return self.effector.driven()
+
+    @property
+    def avoids_ways(self) -> bool:
+        """Whether it knows ways by names, so that it keeps off those that it is told of."""
+        return self.effector.ways.has_places
+
+    def avoid(self, told: Avoid) -> None:
+        """Keep off ways where others lead."""
+        ways = {frozenset(each.between): each.until for each in told.ways}
+        self.effector.closed.tell(ways)
 
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> BaseExecution:
         """What a start command asks for, not begun. Raises `CommandError`."""
@@ -80,6 +100,8 @@ class BaseSubsystem:
             target=self._target(getattr(parameters, "place", None), start.target),
             ways=self.effector.ways,
             basket=self.effector.basket,
+            closed=self.effector.closed.at(self.effector.body.time_s()),
+            companion=self.effector.companion,
         )
         steps = behavior.steps(parameters, situation)
         if not self.effector.whereabouts.is_lost:
@@ -125,11 +147,13 @@ class BaseSubsystem:
         return layout.model_copy(update={"drives": True})
 
     def show(self, poses: Poses) -> Poses:
-        """Where the base frame is, and on which floor."""
+        """Where the base frame is, on which floor, and how sure it is of that."""
         here = self.effector.body.pose()
         half = here.yaw / 2
         base = (here.x, here.y, here.z, 0.0, 0.0, math.sin(half), math.cos(half))
-        return poses.model_copy(update={"base": base})
+        known = self.effector.whereabouts.covariance()
+        covariance = None if known is None else list(known)
+        return poses.model_copy(update={"base": base, "covariance": covariance})
 
     def note(self, looked: Looked) -> None:
         """What others located does not concern it."""

@@ -17,6 +17,12 @@ class Whereabouts(Protocol):
         """How long it has been lost; 0 while it is not."""
         ...
 
+    def covariance(self) -> Sequence[float] | None:
+        """How sure it is of its place along the axes of its map: xx, xy, yy (m2); None where that
+        is not known.
+        """
+        ...
+
     def guesses(self) -> Sequence[str]:
         """Where it may be by what it sees, likeliest first: `at F1-101`, `near F1-101`."""
         ...
@@ -31,6 +37,9 @@ class AlwaysKnown:
 
     is_lost = False
     lost_s = 0.0
+
+    def covariance(self) -> None:
+        """None: it knows its place as exactly as it is told."""
 
     def guesses(self) -> Sequence[str]:
         """None: it knows."""

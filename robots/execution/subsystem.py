@@ -8,6 +8,8 @@ from mend.robots.execution.effector import Effector
 from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
+    Avoid,
+    Driven,
     Look,
     Looked,
     PoseLayout,
@@ -43,6 +45,20 @@ class Subsystem(Protocol):
     @property
     def keeps_clear(self) -> bool:
         """Whether it keeps clear of other robots by what it senses, so that it needs no room."""
+        ...
+
+    @property
+    def driven(self) -> Driven | None:
+        """What it has driven so far, by its wheels; None if it has none."""
+        ...
+
+    @property
+    def avoids_ways(self) -> bool:
+        """Whether it keeps off ways that it is told of."""
+        ...
+
+    def avoid(self, told: Avoid) -> None:
+        """Keep off ways where others lead."""
         ...
 
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> AnyExecution:

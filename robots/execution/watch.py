@@ -59,7 +59,7 @@ class Watch(ABC, Generic[V, G]):
             if monitor.issue in self._raised or not self._may_judge(monitor, view):
                 continue
             detection = monitor.check(view)
-            if detection is None:
+            if detection is None or self._copes_with(monitor, detection):
                 continue
             if monitor.interrupts:
                 self._effector.stop()
@@ -69,6 +69,10 @@ class Watch(ABC, Generic[V, G]):
             self._report_issue(monitor, detection, view)
             if monitor.interrupts:
                 raise Interruption(monitor.reaction, monitor.issue)
+
+    def _copes_with(self, _: AnyMonitor, __: Detection) -> bool:
+        """Whether the robot deals with it by itself, so that it is no issue."""
+        return False
 
     def _may_judge(self, _: AnyMonitor, __: V) -> bool:
         """Whether a monitor can judge by what it is shown."""

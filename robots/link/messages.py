@@ -156,6 +156,9 @@ BASKET = "basket"
 GAUGE = "gauge"
 """And where the gauge of a battery told it."""
 
+TRACKER = "tracker"
+"""And where what follows a person by eye, or by a badge, saw them or did not."""
+
 LISTENING = "listening"
 """And where it is that nobody has said anything."""
 
@@ -205,6 +208,16 @@ class ShownPose(Message):
     hidden: bool = False
 
 
+class Driven(Message):
+    """What a base has driven since its program began: how far, by its wheels (metres).
+
+    `barred_s`: how long it stood meanwhile before what barred its way, on its way.
+    """
+
+    way_m: Annotated[float, Field(ge=0, le=1e9)]
+    barred_s: Span
+
+
 class ActiveExecution(Message):
     """What a robot was doing when it said hello."""
 
@@ -217,12 +230,16 @@ class ActiveExecution(Message):
 
 
 class StepStarted(Message):
-    """A behavior's step has begun; steps count from 1."""
+    """A behavior's step has begun; steps count from 1.
+
+    `phase`: what the step is for, as `travel`, `ride`, `load`, `unload` or `tell`.
+    """
 
     type: Literal["step_started"] = "step_started"
     execution: Word
     step: Count
     name: Word
+    phase: Word | None = None
 
 
 class IssueDetected(Message):
@@ -300,6 +317,8 @@ class Looked(Message):
     that is between the fingers. `blind`: why the head camera showed nothing of the table, or of
     where the object that was just put down is to be, so that the look tells nothing of what is on
     the table; None if it did. `felt`: what a basket felt where that was not what was expected.
+    `led_round`: `way_clear` is fulfilled because another way leads round, not because what was in
+    the way is gone.
     """
 
     type: Literal["looked"] = "looked"
@@ -312,6 +331,19 @@ class Looked(Message):
     held: Word | None = None
     blind: Sentence | None = None
     felt: FeltLoad | None = None
+    led_round: bool = False
+
+
+class WayFound(Message):
+    """What a robot has found of a way that it drives, without asking anybody.
+
+    `between`: neighbouring places of its map, the one it came from first. It goes round where that
+    is `blocked`, a `door_closed` or an `elevator_dead`; it is `open` once the robot has passed it.
+    """
+
+    type: Literal["way_found"] = "way_found"
+    finding: Word
+    between: Annotated[list[Word], Field(min_length=2, max_length=2)]
 
 
 class Held(Message):
@@ -351,6 +383,7 @@ ReportBody = Annotated[
     | Resumed
     | Finished
     | Looked
+    | WayFound
     | Held
     | Intervened
     | Rejected,
@@ -427,6 +460,7 @@ Expected = Literal[
     "loaded",
     "unloaded",
     "charged",
+    "accompanied",
 ]
 
 
@@ -439,7 +473,7 @@ class Look(Message):
     close once it is seen between the fingers); `way_clear`: nothing is in the arm's way;
     `view_clear`: the head camera shows the table; `located`: it knows where it is; `loaded` and
     `unloaded`: its basket weighs what the step that waits needs, or what it weighed before;
-    `charged`: current comes into its battery. A
+    `charged`: current comes into its battery; `accompanied`: it sees near it whom it escorts. A
     person has told `guess`, one of a detection's `guesses`: then what it sees has to agree with it.
     `rate`: simulated worlds let their clock run so fast while they look again and again; None is
     the run's own speed. `finished`: the results to judge by what the last pictures show.
@@ -460,6 +494,23 @@ class SlowDown(Message):
 
     type: Literal["slow_down"] = "slow_down"
     factor: Annotated[float, Field(gt=0, le=1)]
+
+
+class ClosedWay(Message):
+    """Nobody gets through `between` these neighbouring places `until` then, as far as is known."""
+
+    between: Annotated[list[Word], Field(min_length=2, max_length=2)]
+    until: Time
+
+
+class Avoid(Message):
+    """Keep off these ways where others lead; all that were told before are open again.
+
+    It changes nothing else that the robot does, at whatever time it comes.
+    """
+
+    type: Literal["avoid"] = "avoid"
+    ways: Annotated[list[ClosedWay], Field(max_length=MOST)] = []
 
 
 class Hold(Message):
@@ -499,7 +550,16 @@ class Shutdown(Message):
 
 
 CommandBody = Annotated[
-    Start | Interrupt | Resume | Look | SlowDown | Hold | Intervene | TakePicture | Shutdown,
+    Start
+    | Interrupt
+    | Resume
+    | Look
+    | SlowDown
+    | Avoid
+    | Hold
+    | Intervene
+    | TakePicture
+    | Shutdown,
     Field(discriminator="type"),
 ]
 
@@ -514,7 +574,8 @@ class Hello(Message):
     `executing`: what it is doing, if anything. `reach`: None of a robot that takes hold of nothing.
     `shows`: what its `poses` hold; None if it sends none. `room`: without it no other robot of its
     run works while its arm does not rest. `keeps_clear`: it moves about and keeps clear of others
-    by what it senses itself, so that no space is kept for it.
+    by what it senses itself, so that no space is kept for it. `driven`: None without a base.
+    `avoids_ways`: it takes `avoid`.
     """
 
     type: Literal["hello"] = "hello"
@@ -531,6 +592,8 @@ class Hello(Message):
     shows: PoseLayout | None = None
     room: RoomLimits | None = None
     keeps_clear: bool = False
+    driven: Driven | None = None
+    avoids_ways: bool = False
 
 
 class Report(Message):
@@ -538,7 +601,7 @@ class Report(Message):
 
     `boot` None is the boot of the hello; a report that an earlier start of the robot's program
     left undelivered names its own. `world`: a simulated world's state after it, from which it can
-    be rebuilt.
+    be rebuilt. `driven`: so far.
     """
 
     type: Literal["report"] = "report"
@@ -547,6 +610,7 @@ class Report(Message):
     time: Time
     body: ReportBody
     world: JsonObject | None = None
+    driven: Driven | None = None
 
 
 class Heartbeat(Message):
@@ -576,14 +640,17 @@ class Poses(Message):
     """Where everything is that the hello's `shows` names; for display only, not durable.
 
     `base`: the robot's base frame, as it stands now, in that in which the robot began, but z from
-    the ground of the scene; all other poses are in the base frame. `tool`: the tool point (x the
-    approach direction, y the opening direction of the fingers).
+    the ground of the scene; all other poses are in the base frame. `covariance`: how sure it is of
+    that, as the variances and the covariance xx, xy, yy of its place along the axes of its map
+    (m2); None where it does not say. `tool`: the tool point (x the approach direction, y the
+    opening direction of the fingers).
     """
 
     type: Literal["poses"] = "poses"
     time: Time
     joints: list[Coordinate] = []
     base: PoseValues = IDENTITY
+    covariance: Annotated[list[Coordinate], Field(min_length=3, max_length=3)] | None = None
     tool: PoseValues
     opening_m: Coordinate
     objects: list[ShownPose] = []

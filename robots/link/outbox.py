@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from mend.errors import UnavailableError
-from mend.robots.link.messages import Report, ReportBody
+from mend.robots.link.messages import Driven, Report, ReportBody
 
 IN_MEMORY = ":memory:"
 
@@ -65,14 +65,20 @@ class Outbox:
         """Half full: the robot should wait until there is room again."""
         return self._count >= self.capacity // 2
 
-    def add(self, body: ReportBody, time: float, world: dict[str, Any] | None) -> Report:
+    def add(
+        self,
+        body: ReportBody,
+        time: float,
+        world: dict[str, Any] | None,
+        driven: Driven | None = None,
+    ) -> Report:
         """Keep a new report of this boot. Raises `UnavailableError`."""
         if self._count >= self.capacity:
             raise UnavailableError(
                 f"the outbox of '{self.robot}' is full: {self.capacity} reports are undelivered"
             )
         seq = self._last_seq + 1
-        report = Report(boot=self.boot, seq=seq, time=time, body=body, world=world)
+        report = Report(boot=self.boot, seq=seq, time=time, body=body, world=world, driven=driven)
         self._database.execute(
             "INSERT INTO reports (robot, boot, seq, text) VALUES (?, ?, ?, ?)",
             (self.robot, self.boot, seq, report.model_dump_json(exclude_none=True)),

@@ -10,13 +10,21 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeVar
 
-from mend.robots.agent import Agent, Clockwork, ShowsPoses
+from mend.robots.agent import Agent, Clockwork, Drives, ShowsPoses
 from mend.robots.link.backoff import Backoff
 from mend.robots.link.channel import Channel, ChannelClosedError
 from mend.robots.link.clock import Clock
 from mend.robots.link.command_memory import CommandMemory
 from mend.robots.link.connection import Connection, UnknownCommand
-from mend.robots.link.messages import Command, Hello, Picture, Rejected, ReportBody, Taken
+from mend.robots.link.messages import (
+    Command,
+    Driven,
+    Hello,
+    Picture,
+    Rejected,
+    ReportBody,
+    Taken,
+)
 from mend.robots.link.outbox import Outbox
 from mend.robots.link.sampling import PoseSampling
 
@@ -77,6 +85,7 @@ class RobotEnd:
         self._emitted: list[Callable[[], None]] = []
         self._connection: Connection | None = None
         self._shown = linked.agent if isinstance(linked.agent, ShowsPoses) else None
+        self._drives = linked.agent if isinstance(linked.agent, Drives) else None
         self._sampling = PoseSampling()
         self._agent.attach(self._emit, self._emit_picture)
 
@@ -85,8 +94,9 @@ class RobotEnd:
         return self._connection is not None
 
     def hello(self) -> Hello:
-        """What the robot is now, with what it shows."""
+        """What the robot is now, with what it shows and has driven."""
         hello = self._agent.hello(self.outbox.boot)
+        hello = hello.model_copy(update={"driven": self._driven()})
         if self._shown is None:
             return hello
         return hello.model_copy(update={"shows": self._shown.pose_layout()})
@@ -100,10 +110,19 @@ class RobotEnd:
             each()
 
     def _emit(self, body: ReportBody, time_s: float, world: dict[str, Any] | None) -> None:
-        self._emitted.append(partial(self._report, body, time_s, world))
+        self._emitted.append(partial(self._report, body, time_s, world, self._driven()))
 
-    def _report(self, body: ReportBody, time_s: float, world: dict[str, Any] | None) -> None:
-        self.outbox.add(body, time_s, world)
+    def _driven(self) -> Driven | None:
+        return None if self._drives is None else self._drives.driven()
+
+    def _report(
+        self,
+        body: ReportBody,
+        time_s: float,
+        world: dict[str, Any] | None,
+        driven: Driven | None = None,
+    ) -> None:
+        self.outbox.add(body, time_s, world, driven)
         if self._connection is not None:
             self._connection.wake()
 

@@ -64,7 +64,7 @@ DEEDS: frozenset[str] = frozenset(
         "answered", "claimed", "released", "deadline_extended",
         "document_kept", "document_deleted", "signed_in", "sign_in_failed", "signed_out",
         "access_changed", "site_opened", "site_closed", "node_taken", "request_changed",
-        "fleet_told",
+        "fleet_told", "errand_begun",
     }
 )  # fmt: skip
 """The types of events that are deeds; some of them only where somebody did them."""
@@ -151,6 +151,8 @@ def _what(event: ev.Event) -> str | None:
             return f"closed the site {site}"
         case ev.FleetTold(told=told, finder=None):
             return told
+        case ev.ErrandBegun(author=ev.Author(), robot=robot, place=place):
+            return f"sent {robot} to {place}"
         case ev.RequestChanged(author=ev.Author(), request=request, status=status):
             return f"{_ASKED.get(status, 'asked for')} '{request}'"
         case ev.RunPaused():

@@ -62,6 +62,7 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     Endpoint("get_asked_robot", "GET", _FLEET_ROBOT + "/asking", Role.VIEWER),
     Endpoint("take_robot_out", "POST", _FLEET_ROBOT + "/out_of_service", Role.OPERATOR),
     Endpoint("put_robot_back", "POST", _FLEET_ROBOT + "/back_in_service", Role.OPERATOR),
+    Endpoint("send_robot", "POST", _FLEET_ROBOT + "/go", Role.OPERATOR),
     Endpoint("tell_of_way", "POST", _SITE + "/fleet/ways", Role.OPERATOR),
     Endpoint("list_requests", "GET", "/api/requests", Role.VIEWER),
     Endpoint("get_request", "GET", _REQUEST, Role.VIEWER),

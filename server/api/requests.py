@@ -17,7 +17,7 @@ from mend.server.fleets.asking import (
     asked_robot,
     understand,
 )
-from mend.server.fleets.operator_requests import OutOfService, WayFound
+from mend.server.fleets.operator_requests import GoThere, OutOfService, WayFound
 from mend.server.fleets.views import FleetView, RequestView
 
 router = APIRouter(tags=["requests"], route_class=RepeatableRoute)
@@ -132,7 +132,7 @@ async def cancel_request(
 async def get_fleet(site: SiteId, services: WithServices) -> FleetView:
     """What the robots of a site are still to do, and why their plan has become what it is."""
     fleet = await services.fleets.fleet(site)
-    return await fleet.read(partial(FleetView.of, site, fleet.places.names, fleet.out_of_service))
+    return await fleet.read(partial(FleetView.of, fleet))
 
 
 FleetRobotName = Annotated[str, Path(max_length=128, description="The robot's name.")]
@@ -178,6 +178,23 @@ async def put_robot_back(
 ) -> None:
     """Have a robot work again, from where it stands."""
     await (await services.fleets.fleet(site)).put_back(robot, caller.author)
+
+
+@router.post(
+    "/api/sites/{site}/fleet/robots/{robot}/go",
+    operation_id="send_robot",
+    status_code=204,
+    responses=documented(400, 401, 403, 404, 409, 413, 421, 422, 503),
+)
+async def send_robot(
+    site: SiteId,
+    robot: FleetRobotName,
+    to: Annotated[GoThere, Body(examples=[{"place": "F1/101"}])],
+    services: WithServices,
+    caller: WithCaller,
+) -> None:
+    """Have a robot that is at no leg go to a place; refused while it is, or is not there."""
+    await (await services.fleets.fleet(site)).send(robot, to.place, caller.author)
 
 
 @router.post(

@@ -47,7 +47,14 @@ def run(
         list[str] | None,
         typer.Option(metavar="PLACE", help="Where things may change robots; may be repeated."),
     ] = None,
+    helper: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Whom robots ask, in this order; may be repeated."),
+    ] = None,
     journal: Annotated[Path | None, typer.Option(help="Where to keep its journal.")] = None,
+    report: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write a report of it, .html.")
+    ] = None,
 ) -> None:
     """Have robots meet the requests of a file, helped by somebody who does what they ask.
 
@@ -57,6 +64,7 @@ def run(
 
     from mend.fleet.request_file import read_request_file
     from mend.server.cli.journals import new_run_journal
+    from mend.server.cli.report import write_report
     from mend.server.cli.run_request import closed_settings, read_options, read_speed
     from mend.server.cli.shift import Shift
     from mend.server.cli.task_files import read_scene
@@ -64,7 +72,8 @@ def run(
 
     with told_plainly():
         own = closed_settings()
-        settings = own.model_copy(update={"journal": journal or new_run_journal(own, "shift")})
+        kept = journal or new_run_journal(own, "shift")
+        settings = own.model_copy(update={"journal": kept, "helpers": helper or []})
         shift = Shift(
             read_scene(scene),
             read_request_file(requests),
@@ -76,6 +85,9 @@ def run(
             speed=read_speed(speed),
         )
         code = asyncio.run(shift.carry_out(settings))
+        if report is not None:
+            write_report(kept, report)
+            typer.echo(f"report: {report}")
     raise typer.Exit(code)
 
 

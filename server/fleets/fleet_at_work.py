@@ -7,30 +7,35 @@ from contextlib import asynccontextmanager
 from datetime import datetime
 from functools import cached_property, partial
 from typing import Literal, TypeVar
-from uuid import UUID, uuid4
+from uuid import UUID
 
+from mend.documents.problem import list_names
 from mend.errors import ConflictError, NotFoundError, RefusalError
 from mend.fleet.asking.spoken_places import SpokenPlaces
 from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd, LegOutcome
 from mend.fleet.requests import RequestKind
+from mend.server.access.principal import RESERVED
 from mend.server.background import Endless
 from mend.server.fleets.alarms import Alarms
+from mend.server.fleets.closed_ways import ClosedWays
+from mend.server.fleets.errands import Errands
 from mend.server.fleets.fleet_news import FleetNews
-from mend.server.fleets.fleet_record import FleetRecord
+from mend.server.fleets.fleet_record import Errand, FleetRecord
 from mend.server.fleets.fleets import KIND
 from mend.server.fleets.leg_execution import LegExecution, LegTurn
-from mend.server.fleets.leg_task import doable_kinds, require_doable, way_of, way_request
+from mend.server.fleets.leg_task import doable_kinds, require_doable
 from mend.server.fleets.making_way import who_makes_way
 from mend.server.fleets.operator_requests import WayFound
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
-from mend.server.fleets.robot_findings import finding_of, is_led_round, issues_raised
+from mend.server.fleets.robot_findings import finding_of, findings, is_led_round
 from mend.server.fleets.runs import Runs
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Document, Entry, Journal
-from mend.server.runtime.views import RunStatus
+from mend.server.poses.bases import SeenBase
+from mend.server.sites.odometer import Odometer
 from mend.server.sites.requests import FleetOptions
 from mend.server.sites.site import Site
 from mend.tasks.plugins import load_plugins
@@ -60,8 +65,9 @@ class FleetAtWork:
         journal: Journal,
         pace: float | None,
         utc_now: Callable[[], datetime],
-        out_of_service: Mapping[str, str],
+        kept: FleetRecord | None = None,
     ) -> None:
+        """`kept`: what was known beside the dispatcher when the service stopped."""
         self.dispatcher = dispatcher
         self._site = site
         self.places = places
@@ -73,16 +79,25 @@ class FleetAtWork:
         self._at_once = asyncio.Lock()
         self._changed = asyncio.Event()
         self._legs: dict[str, tuple[LegExecution, asyncio.Task[None]]] = {}
-        self._making_way: dict[str, asyncio.Task[None]] = {}
+        self._errands = Errands(
+            site,
+            dispatcher,
+            places,
+            lambda: self._options,
+            runs,
+            () if kept is None else kept.errands,
+        )
+        self._going: dict[str, asyncio.Task[None]] = {}
+        self.closed_ways = ClosedWays(dispatcher, () if kept is None else kept.closed_ways)
         self._behaviors = load_plugins("mend.behaviors")
         self._main: asyncio.Task[None] | None = None
         self._hears: asyncio.Task[None] | None = None
-        self._barred: dict[str, Found] = {}
-        """What robots have found on the way to the place of the leg that they are on."""
+        self._set_out: dict[str, Odometer | None] = {}
+        """What robots had driven when they set out for the leg that they are on."""
         self._kept: FleetRecord | None = None
         self._noted: list[ev.Event] = []
         self._alarms = Alarms(lambda: self.now_s)
-        self.out_of_service = dict(out_of_service)
+        self.out_of_service = {} if kept is None else dict(kept.out_of_service)
         """The robots that somebody has taken out, and why."""
 
     # --- Its life -----------------------------------------------------------------------------
@@ -90,6 +105,7 @@ class FleetAtWork:
     def start(self) -> None:
         """Begin to work; legs that were under way go on."""
         self._site.changed = self._changed.set
+        self._site.show_bases()
         self._changed.set()
         self._main = asyncio.create_task(self._work(), name=f"fleet of {self._site.id}")
         self._hears = asyncio.create_task(self._hear(), name=f"findings at {self._site.id}")
@@ -97,7 +113,7 @@ class FleetAtWork:
     async def stop(self) -> None:
         """Stop without ending anything: it goes on from the journal."""
         self._site.changed = lambda: None
-        tasks = [*(task for _, task in self._legs.values()), *self._making_way.values()]
+        tasks = [*(task for _, task in self._legs.values()), *self._going.values()]
         tasks += [each for each in (self._main, self._hears) if each is not None]
         for task in tasks:
             task.cancel()
@@ -114,17 +130,21 @@ class FleetAtWork:
     async def _go_on(self) -> None:
         async with self._at_once:
             unwanted = await asyncio.to_thread(self._decide, self.now_s)
+            for robot, to in list(who_makes_way(self.dispatcher, self.places.names)):
+                if robot not in self._errands.going and self._site.rests(robot):
+                    self._send(robot, to, None)
             await self._keep()
             under_way = self.dispatcher.legs_under_way()
+            self._site.keep_off(self.dispatcher.closed_until_s())
             for execution, _ in self._legs.values():
                 execution.look_again()
             self._alarms.ring()
             self._let_time_pass()
-            in_the_way = list(who_makes_way(self.dispatcher, self.places.names))
-        for robot, to in in_the_way:
-            if robot not in self._making_way and self._site.rests(robot):
-                task = asyncio.create_task(self._make_way(robot, to), name=f"{robot} makes way")
-                self._making_way[robot] = task
+            errands = list(self._errands.going.values())
+        for errand in errands:
+            if errand.robot not in self._going:
+                task = asyncio.create_task(self._go(errand), name=f"errand of {errand.robot}")
+                self._going[errand.robot] = task
         for leg in under_way:
             if leg.robot not in self._legs:
                 self._carry_out(leg)
@@ -138,11 +158,15 @@ class FleetAtWork:
             if not known.works and robot not in self.out_of_service and self._site.rests(robot):
                 self.dispatcher.robot_back(robot, self._at(robot), now_s)
         unwanted = self.dispatcher.legs_to_withdraw(now_s)
-        while due := [e for e in self.dispatcher.legs_to_begin(now_s) if self._site.rests(e.robot)]:
+        while due := [e for e in self.dispatcher.legs_to_begin(now_s) if self._is_free(e.robot)]:
             start = self._at(due[0].robot)
             self.dispatcher.began(due[0], now_s)
+            self._set_out[due[0].robot] = self._site.odometer(due[0].robot)
             self._noted.append(self._news.begun(due[0], start))
         return unwanted
+
+    def _is_free(self, robot: str) -> bool:
+        return self._site.rests(robot) and robot not in self._errands.going
 
     @property
     def site(self) -> UUID:
@@ -153,6 +177,11 @@ class FleetAtWork:
     def now_s(self) -> float:
         """The site's clock, as far as it is known: it never goes back."""
         return max(self.dispatcher.now_s, self._site.world.time.latest_s)
+
+    @property
+    def shown_s(self) -> float:
+        """The site's clock for who watches it: robots tell of it more often than plans need it."""
+        return max(self.now_s, self._site.shown_s)
 
     def _let_time_pass(self) -> None:
         """Have the site's clock run to when there is something to be done, if there ever is."""
@@ -197,37 +226,31 @@ class FleetAtWork:
     async def _hear(self) -> None:
         """Have plans follow what robots find on their ways."""
         hearing = Endless(f"what robots find at site {self._site.id}")
-        async for raised in issues_raised(self._journal):
-            if raised.robot in self._legs and raised.run == self._site.run_of(raised.robot):
+        async for event in findings(self._journal):
+            found = finding_of(event)
+            if found is not None and event.robot in self.dispatcher.fleet.robots:
                 with hearing.one_pass():
-                    await self._robot_found(raised)
+                    await self._robot_found(found)
 
-    async def _robot_found(self, raised: ev.IssueRaised) -> None:
+    async def _robot_found(self, found: Found) -> None:
         async with self._told():
-            legs = self.dispatcher.legs_under_way()
-            leg = next((each for each in legs if each.robot == raised.robot), None)
-            found = None if leg is None else finding_of(raised, leg)
-            if leg is None or found is None:
-                return
-            closed, graph = self.dispatcher.closed_until_s(), self.dispatcher.building.graph
-            if not is_led_round(graph, closed, found, leg.place):
+            if not self._is_news(found):
                 return
             try:
                 await asyncio.to_thread(self.dispatcher.found, found, self.now_s)
-                self._barred[raised.robot] = found
+                self.closed_ways.note(found, found.by)
                 self._note_found(found)
             except RefusalError as error:
-                log.info("what %s found of its way changes no plan: %s", raised.robot, error)
+                log.info("what %s found of its way changes no plan: %s", found.by, error)
 
-    def _got_through(self, leg: Leg) -> None:
-        """A robot has come to its place all the same: what barred its way has gone."""
-        found = self._barred.pop(leg.robot, None)
-        if found is None or self._at(leg.robot) != leg.place:
-            return
-        if frozenset(found.between) in self.dispatcher.closed_until_s():
-            opened = Found(finding=Finding.OPEN, between=found.between, by=leg.robot)
-            self.dispatcher.found(opened, self.now_s)
-            self._note_found(opened)
+    def _is_news(self, found: Found) -> bool:
+        """Whether what a robot has found is something for others to go by."""
+        closed, graph = self.dispatcher.closed_until_s(), self.dispatcher.building.graph
+        if found.finding is Finding.OPEN:
+            return frozenset(found.between) in closed
+        legs = self.dispatcher.legs_under_way()
+        leg = next((each for each in legs if each.robot == found.by), None)
+        return is_led_round(graph, closed, found, found.between[1] if leg is None else leg.place)
 
     def _note_found(self, found: Found) -> None:
         """It is told even where it changes nobody's plan."""
@@ -236,32 +259,39 @@ class FleetAtWork:
         told = f"found of the way between {a} and {b}: {finding}"
         self._noted.append(self._news.told(told, finder=found.by))
 
-    async def _make_way(self, robot: str, to: str) -> None:
-        """Send a robot with nothing to do elsewhere; where it got to is known then."""
-        run = uuid4()
+    def _send(self, robot: str, place: str, author: ev.Author | None) -> None:
+        """Have a robot without a leg go somewhere, once that is journaled."""
+        errand = self._errands.add(robot, place)
+        self._noted.append(self._news.errand_begun(errand, self._at(robot), author))
+
+    async def _go(self, errand: Errand) -> None:
+        robot, begun = errand.robot, True
         try:
-            request = way_request(self._site.id, robot, self._options)
-            await self._runs.start_run_of(run, request, way_of(self.places.in_scene(to)))
-            view = await self._runs.wait_for_end(run)
-            there = view.status is RunStatus.FINISHED
-            async with self._at_once:
-                self.dispatcher.robot_moved(robot, to if there else self._at(robot), self.now_s)
-                await self._keep()
-            self._changed.set()
+            reason = await self._errands.carry_out(errand)
         except RefusalError as error:
-            # Whatever changes next has it tried again.
-            log.info("%s did not make way: %s", robot, error)
-        finally:
-            del self._making_way[robot]
+            reason, begun = str(error)[:500], False
+        except Exception:
+            # Its robot would be thought to be on its way for ever.
+            log.exception("an errand of %s could not be carried out", robot)
+            reason, begun = "a fault of Mend's own; see its log", False
+        async with self._at_once:
+            at = errand.place if reason is None else self._at(robot)
+            self._noted.append(self._news.errand_ended(errand, at, reason))
+            try:
+                self._errands.end(errand, at)
+            except ConflictError as error:
+                log.info("where %s has gone changes no plan: %s", robot, error)
+            del self._going[robot]
+            await self._keep()
+        if begun:
+            self._changed.set()
+        # Else whatever changes next has it tried again, where it makes way.
 
     def _end(self, leg: Leg, end: LegEnd) -> None:
         robot, now_s = leg.robot, self.now_s
         done = end.outcome is LegOutcome.DONE
         gone = None if self._site.is_connected(robot) else end.reason or "it is gone"
         why = self.out_of_service.get(robot, None if done else gone)
-        if done:
-            self._got_through(leg)
-        self._barred.pop(robot, None)
         if done or why is None:
             try:
                 self.dispatcher.ended(leg, end, now_s)
@@ -273,7 +303,9 @@ class FleetAtWork:
         if why is not None:
             # Others fetch what it has, and do what it was to do.
             self.dispatcher.robot_failed(robot, self._met_at(robot), why, now_s)
-        self._noted.append(self._news.ended(leg, end))
+        odometer, before = self._site.odometer(robot), self._set_out.pop(robot, None)
+        driven = None if odometer is None else odometer.since(before)
+        self._noted.append(self._news.ended(leg, end, driven))
 
     def stands_at(self, robot: str) -> str | None:
         """The place at which somebody asks a robot; None where none is sent. Raises
@@ -349,12 +381,24 @@ class FleetAtWork:
 
     async def found(self, way: WayFound, author: ev.Author | None) -> None:
         """A way was found blocked, or open. Raises as `Dispatcher.found`."""
-        a, b = way.between
+        a, b = way.between or self._stops_of(way.elevator or "")
+        what = f"the way between {a} and {b}" if way.elevator is None else way.elevator
         found = Found(finding=Finding(way.finding), between=(a, b), until_s=way.until_s)
         async with self._told():
             self.dispatcher.found(found, self.now_s)
+            named = author is not None and author.principal not in RESERVED
+            self.closed_ways.note(found, author.principal if author and named else None)
             finding = way.finding.replace("_", " ")
-            self._note(f"said of the way between {a} and {b}: {finding}", author)
+            self._note(f"said of {what}: {finding}", author)
+
+    def _stops_of(self, elevator: str) -> list[str]:
+        """Two places where it stops. Raises `NotFoundError`."""
+        elevators = self.dispatcher.building.document.elevators
+        if elevator not in elevators:
+            raise NotFoundError(
+                f"there is no elevator '{elevator}'; there are {list_names(list(elevators))}"
+            )
+        return [f"{floor}/{at}" for floor, at in elevators[elevator].stops.items()][:2]
 
     async def take_out(self, robot: str, reason: str, author: ev.Author | None) -> None:
         """A robot is to do nothing more for now; others fetch what it has.
@@ -368,10 +412,25 @@ class FleetAtWork:
             self.out_of_service[robot] = reason
             self._note(f"took {robot} out of service: {reason}", author, robot, in_service=False)
             leg = next((e for e in self.dispatcher.legs_under_way() if e.robot == robot), None)
+            errand = self._errands.going.get(robot)
             if leg is None and self.dispatcher.fleet.robots[robot].works:
                 self.dispatcher.robot_failed(robot, self._met_at(robot), reason, self.now_s)
         if leg is not None and robot in self._legs:
             await self._legs[robot][0].break_off()
+        if errand is not None:
+            await self._errands.break_off(errand)
+
+    async def send(self, robot: str, place: str, author: ev.Author | None) -> None:
+        """Have a robot that carries out no leg go to a place; its legs begin after that.
+
+        Raises `NotFoundError`, `WrongInputError` for where no robot goes, and `ConflictError` for
+        a robot that is at work, or is not there.
+        """
+        async with self._told():
+            self._require_robot(robot)
+            self.places.in_scene(place)
+            self._errands.require_free(robot)
+            self._send(robot, self.dispatcher.building.find(place), author)
 
     async def have_answered(self, answers: Literal["live", "yes", "late"]) -> None:
         """Who answers robots in the legs that begin from now on."""
@@ -420,6 +479,23 @@ class FleetAtWork:
                 await self._keep(author, asked.split("/", 1)[0])
                 self._changed.set()
 
+    @property
+    def errands(self) -> Mapping[str, Errand]:
+        """Which robots go somewhere without a leg."""
+        return self._errands.going
+
+    def is_connected(self, robot: str) -> bool:
+        """Whether a robot is there."""
+        return self._site.is_connected(robot)
+
+    def run_of(self, robot: str) -> UUID | None:
+        """Which run has a robot."""
+        return self._site.run_of(robot)
+
+    def base(self, robot: str) -> SeenBase | None:
+        """Where a robot says that it is; None until it has."""
+        return self._site.base(robot)
+
     async def read(self, view: Callable[[Dispatcher], T]) -> T:
         """What a view of its dispatcher shows, while nothing changes there."""
         async with self._at_once:
@@ -432,7 +508,10 @@ class FleetAtWork:
         events = [*self._noted, *self._news.since(author, asked)]
         self._noted.clear()
         record = FleetRecord(
-            dispatcher=self.dispatcher.snapshot(), out_of_service=self.out_of_service
+            dispatcher=self.dispatcher.snapshot(),
+            out_of_service=self.out_of_service,
+            errands=tuple(self._errands.going.values()),
+            closed_ways=self.closed_ways.kept(),
         )
         if not events and record == self._kept:
             return

@@ -7,6 +7,8 @@ from uuid import UUID
 from mend.fleet.dispatch.booking import PlanChange, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Leg, LegEnd
+from mend.robots.link.messages import Driven
+from mend.server.fleets.fleet_record import Errand
 from mend.server.journal import events as ev
 
 
@@ -72,8 +74,8 @@ class FleetNews:
             start=start,
         )
 
-    def ended(self, leg: Leg, end: LegEnd) -> ev.LegEnded:
-        """What became of a leg."""
+    def ended(self, leg: Leg, end: LegEnd, driven: Driven | None) -> ev.LegEnded:
+        """What became of a leg, and what its robot has driven for it, as far as is known."""
         return ev.LegEnded(
             wall_time=self._utc_now(),
             site=self._site,
@@ -86,6 +88,33 @@ class FleetNews:
             outcome=end.outcome,
             reason=end.reason,
             at=end.at or leg.place,
+            driven_m=None if driven is None else driven.way_m,
+            barred_s=None if driven is None else driven.barred_s,
+        )
+
+    def errand_begun(self, errand: Errand, start: str, author: ev.Author | None) -> ev.ErrandBegun:
+        """A robot that stands at `start` is sent somewhere without a leg."""
+        return ev.ErrandBegun(
+            wall_time=self._utc_now(),
+            site=self._site,
+            at_s=self._dispatcher.now_s,
+            robot=errand.robot,
+            place=errand.place,
+            start=start,
+            author=author,
+        )
+
+    def errand_ended(self, errand: Errand, at: str, reason: str | None) -> ev.ErrandEnded:
+        """Where it is then; `reason`: why it has not come to its place."""
+        return ev.ErrandEnded(
+            wall_time=self._utc_now(),
+            site=self._site,
+            at_s=self._dispatcher.now_s,
+            robot=errand.robot,
+            place=errand.place,
+            came=reason is None,
+            reason=reason,
+            at=at,
         )
 
     def _request(self, view: RequestView, author: ev.Author | None) -> ev.RequestChanged:
@@ -113,6 +142,10 @@ class FleetNews:
             requests=list(change.requests),
             robots=list(change.robots),
             said=dict(change.said),
+            transfers=[
+                ev.PlannedTransfer(request=name, sooner_s=saving.sooner_s, less_m=saving.less_m)
+                for name, saving in change.transfers.items()
+            ],
         )
 
 

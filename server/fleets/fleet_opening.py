@@ -1,6 +1,6 @@
 """Opening the fleet of a site: its robots, its plan, and what was kept of it."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from datetime import datetime
 from typing import Protocol
 
@@ -53,18 +53,15 @@ def open_fleet(
     assert record.fleet is not None, "it takes requests"
     building = building_of(record.scene)
     setting = _setting(record, record.fleet, building)
-    out_of_service: Mapping[str, str] = {}
-    if kept is None:
-        dispatcher = Dispatcher(building, setting)
-    else:
-        was = FleetRecord.model_validate_json(kept)
-        dispatcher = Dispatcher.restored(building, setting, was.dispatcher)
-        out_of_service = was.out_of_service
+    was = None if kept is None else FleetRecord.model_validate_json(kept)
+    dispatcher = (
+        Dispatcher(building, setting)
+        if was is None
+        else Dispatcher.restored(building, setting, was.dispatcher)
+    )
     places = PlaceNames(building, record.scene)
     pace = None if record.speed == "max" else record.speed
-    return FleetAtWork(
-        site, dispatcher, places, record.fleet, runs, journal, pace, utc_now, out_of_service
-    )
+    return FleetAtWork(site, dispatcher, places, record.fleet, runs, journal, pace, utc_now, was)
 
 
 def _setting(record: SiteRecord, options: FleetOptions, building: Building) -> FleetSetting:

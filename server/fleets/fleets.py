@@ -70,6 +70,10 @@ class Fleets:
             raise ConflictError(
                 f"site {site} has open requests, '{open_[0]}' first: cancel them, or wait"
             )
+        for errand in fleet.errands.values():
+            raise ConflictError(
+                f"robot '{errand.robot}' of site {site} is on its way to {errand.place}: wait"
+            )
         await self._fleets.pop(site).stop()
         await self._journal.append(Entry(document=Document(KIND, str(site), None)))
 

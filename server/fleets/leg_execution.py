@@ -9,6 +9,7 @@ from uuid import UUID
 from mend.errors import ConflictError, RefusalError, UnavailableError
 from mend.fleet.dispatch.leg import Leg, LegEnd, LegOutcome
 from mend.fleet.requests import GoToRoom, LegAction
+from mend.robots.base.behaviors.behavior import MEETS_M
 from mend.server.fleets.leg_task import LegStage, run_of, run_request, task_of, way_of
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.runs import Runs
@@ -95,9 +96,9 @@ class LegExecution:
     async def _stages(self, *, at_once: bool) -> LegEnd:
         leg, place = self._leg, self._places.in_scene(self._leg.place)
         visits = leg.action is LegAction.VISIT
-        doing = run_of(self._site.id, leg, LegStage.DO)
+        doing = run_of(self._site.id, leg.robot, leg.number, LegStage.DO)
         if visits or not (at_once or await self._runs.has_run(doing)):
-            end = await self._done(LegStage.GO, way_of(place))
+            end = await self._done(LegStage.GO, way_of(place, MEETS_M))
             if end.outcome is not LegOutcome.DONE:
                 return end
             await self._wait()
@@ -119,7 +120,8 @@ class LegExecution:
 
     async def _done(self, stage: LegStage, tree: TaskTreeDefinition) -> LegEnd:
         """What came of one of its runs."""
-        leg, run = self._leg, run_of(self._site.id, self._leg, stage)
+        leg = self._leg
+        run = run_of(self._site.id, leg.robot, leg.number, stage)
         request = run_request(self._site.id, leg, self._options)
         while not await self._is_begun(run, request, tree):
             if self._broken_off:

@@ -13,7 +13,14 @@ from mend.documents.validation import describe_mistake
 from mend.errors import WrongInputError
 from mend.fleet.dispatch.booking import AnyRequest
 from mend.fleet.dispatch.leg import Leg
-from mend.fleet.requests import REQUESTS, DeliverMessage, LegAction, RequestKind, Transport
+from mend.fleet.requests import (
+    REQUESTS,
+    DeliverMessage,
+    Escort,
+    LegAction,
+    RequestKind,
+    Transport,
+)
 from mend.robots.execution.behavior import Behavior
 from mend.server.runtime.requests import RunRequest
 from mend.server.sites.requests import FleetOptions
@@ -23,6 +30,8 @@ from mend.tasks.scenario import Person
 GO_TO = "go_to"
 BEHAVIORS = {
     LegAction.DELIVER_MESSAGE: "deliver_message",
+    LegAction.MEET: "meet_person",
+    LegAction.ESCORT: "escort",
     LegAction.COLLECT: "collect_item",
     LegAction.TAKE: "collect_item",
     LegAction.HAND_OVER: "hand_over_item",
@@ -33,6 +42,8 @@ BEHAVIORS = {
 _ARTICLE = re.compile(r"^(the|a|an)\s+", re.IGNORECASE)
 _NO_WORD = re.compile(r"[^A-Za-z0-9]+")
 _MOST_OF_WHAT = 31
+ASKED_IN_VAIN = 2
+"""When it is put, and when it is put again: then a question goes to somebody else."""
 MOST_ANSWERS = 20
 """So often a simulated person answers in one run."""
 
@@ -44,9 +55,9 @@ class LegStage(StrEnum):
     DO = "do"
 
 
-def run_of(site: UUID, leg: Leg, stage: LegStage) -> UUID:
-    """The id of the run: the same one, however often it is asked for."""
-    return uuid5(site, f"{leg.robot} {leg.number} {stage}")
+def run_of(site: UUID, robot: str, number: int, stage: LegStage) -> UUID:
+    """The id of the run of a robot's leg: the same one, however often it is asked for."""
+    return uuid5(site, f"{robot} {number} {stage}")
 
 
 def run_request(site: UUID, leg: Leg, options: FleetOptions) -> RunRequest:
@@ -63,7 +74,7 @@ def _request(site: UUID, tree: str, robot: str, options: FleetOptions) -> RunReq
     request = RunRequest(tree=tree, site=site, robots=[robot], answers="live")
     if options.answers == "live":
         return request
-    first = ["silence"] if options.answers == "late" else []
+    first = ["silence"] * ASKED_IN_VAIN if options.answers == "late" else []
     person = {"answers": [*first, *["yes"] * MOST_ANSWERS], "person": Person(acts=True)}
     return request.model_copy(update=person)
 
@@ -105,9 +116,9 @@ def require_doable(request: AnyRequest, behaviors: Mapping[str, type[Behavior]])
             raise WrongInputError("; ".join(said), said) from error
 
 
-def way_of(place: str) -> TaskTreeDefinition:
-    """The task of going to a place, as the scene calls it."""
-    return _leaf(GO_TO, {"place": place})
+def way_of(place: str, near_m: float = 0.0) -> TaskTreeDefinition:
+    """The task of going to a place, as the scene calls it, or near to it if it is not free."""
+    return _leaf(GO_TO, {"place": place, "near_m": near_m} if near_m else {"place": place})
 
 
 def task_of(leg: Leg, place: str) -> TaskTreeDefinition:
@@ -125,6 +136,8 @@ def _parameters(request: AnyRequest, booking: str) -> dict[str, Any]:
     match request:
         case DeliverMessage(message=message):
             return {"message": message}
+        case Escort(person=person):
+            return {"person": person}
         case Transport(what=what):
             return {"item": item_of(what, booking)}
         case _:

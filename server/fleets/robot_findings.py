@@ -3,7 +3,7 @@
 import logging
 from collections.abc import AsyncIterator, Collection
 
-from mend.fleet.dispatch.leg import Finding, Found, Leg
+from mend.fleet.dispatch.leg import Finding, Found
 from mend.maps.navigation import NavigationGraph
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Journal
@@ -11,16 +11,24 @@ from mend.server.journal.subscriptions import PrunedEventsError, SubscriptionOve
 
 log = logging.getLogger(__name__)
 
-FINDINGS = {"blocked": Finding.BLOCKED, "door_closed": Finding.DOOR_CLOSED}
-"""What an issue says of the way on which it was raised."""
+FindingEvent = ev.IssueRaised | ev.WayFound
+
+_TYPES = ('"issue_raised"', '"way_found"')
 
 
-def finding_of(raised: ev.IssueRaised, leg: Leg) -> Found | None:
-    """What a robot with a leg has found; None for what says nothing of a way."""
-    finding, seen = FINDINGS.get(raised.issue), raised.detection
-    if finding is None or seen is None or len(seen.between) != 2:
+def finding_of(event: FindingEvent) -> Found | None:
+    """What a robot has found of a way; None for what says nothing of one.
+
+    What it asks people about is called as the issue is.
+    """
+    if isinstance(event, ev.WayFound):
+        finding, between = event.finding, event.between
+    else:
+        finding = event.issue
+        between = [] if event.detection is None else event.detection.between
+    if finding not in list(Finding) or len(between) != 2:
         return None
-    return Found(finding=finding, between=(seen.between[0], seen.between[1]), by=leg.robot)
+    return Found(finding=Finding(finding), between=(between[0], between[1]), by=event.robot)
 
 
 def is_led_round(
@@ -30,7 +38,7 @@ def is_led_round(
 
     Where none does, people are to help, and the plan stays: nobody else would get there either.
     """
-    shut = {*closed, frozenset(found.between)}
+    shut = {*closed, *graph.together(found.between)}
     open_ = [e for e in graph.ways if not e.closed and frozenset((e.a, e.b)) not in shut]
     reached, new = set[str](), {found.between[0]}
     while new:
@@ -41,18 +49,18 @@ def is_led_round(
     return place in reached
 
 
-async def issues_raised(journal: Journal) -> AsyncIterator[ev.IssueRaised]:
-    """The issues of all runs from now on, until the journal is closed."""
+async def findings(journal: Journal) -> AsyncIterator[FindingEvent]:
+    """What robots find in all runs from now on, until the journal is closed."""
     while True:
         with journal.subscribe(journal.head) as news:
             try:
                 async for record in news:
-                    if '"issue_raised"' not in record.text:
+                    if not any(each in record.text for each in _TYPES):
                         continue
                     event = ev.any_event.validate_json(record.text)
-                    if isinstance(event, ev.IssueRaised):
+                    if isinstance(event, FindingEvent):
                         yield event
                 return
             except (SubscriptionOverflowError, PrunedEventsError) as error:
                 # What robots found meanwhile they find again.
-                log.warning("a fleet did not hear of all issues: %s", error)
+                log.warning("a fleet did not hear all that robots found: %s", error)

@@ -1,15 +1,19 @@
 """What clients see of requests and of the fleet that meets them."""
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from math import atan2
+from typing import TYPE_CHECKING, Any, Literal
 from uuid import UUID
 
-from mend.fleet.requests import RequestStatus
+from mend.fleet.requests import LegAction, RequestStatus
 from mend.server.runtime.views import View
 
 if TYPE_CHECKING:
     from mend.fleet.dispatch.booking import RequestView as Booked
     from mend.fleet.dispatch.dispatcher import Dispatcher
+    from mend.fleet.scheduling.replanning.live_plan import NextStop
+    from mend.server.fleets.closed_ways import ClosedWay
+    from mend.server.fleets.fleet_at_work import FleetAtWork
+    from mend.server.poses.bases import SeenBase
 
 
 class ExpectedView(View):
@@ -56,26 +60,87 @@ class RequestView(View):
 
 
 class PlannedStop(View):
-    """What a robot is to do; it may be `slack_s` late before anything breaks."""
+    """What a robot is to do at a place; it may be `slack_s` late at that.
+
+    `partner`: the robot that takes what is given here, or gives what is taken here.
+    """
 
     place: str
-    action: str
+    action: LegAction
     request: str
     begins_s: float
+    done_s: float
     slack_s: float
+    partner: str | None
+
+
+class RobotPose(View):
+    """Where a robot says that it is, in the scene's frame; `age_s`: how long ago.
+
+    `covariance`: of its place, xx, xy, yy (m2); None where it does not tell.
+    """
+
+    x: float
+    y: float
+    z: float
+    yaw: float
+    age_s: float
+    covariance: list[float] | None
+
+    @classmethod
+    def of(cls, base: "SeenBase") -> "RobotPose":
+        """What is told of a base."""
+        x, y, z, qx, qy, qz, qw = base.pose
+        yaw = atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
+        covariance = None if base.covariance is None else list(base.covariance)
+        return cls(x=x, y=y, z=z, yaw=yaw, age_s=base.age_s, covariance=covariance)
+
+
+class FleetLeg(View):
+    """What a robot is at: for a request, or (None) to a place where somebody wants it."""
+
+    place: str
+    action: LegAction | None
+    request: str | None
 
 
 class FleetRobot(View):
-    """A robot of a fleet: whether it works, what it has aboard, and what is still to be done.
+    """A robot of a fleet: whether it works, where it is, what it has aboard, is at and is to do.
 
-    `out_of_service`: why somebody has taken it out; None where nobody has.
+    `out_of_service`: why somebody has taken it out; None where nobody has. `home`: its first place;
+    `run`: which has it now.
     """
 
     robot: str
     works: bool
+    connected: bool
     out_of_service: str | None
+    home: str
+    run: UUID | None
+    pose: RobotPose | None
     aboard: list[str]
+    at_work: FleetLeg | None
     stops: list[PlannedStop]
+
+
+class ClosedWayView(View):
+    """A way between two places that no plan uses until `until_s`, and who has found that."""
+
+    between: list[str]
+    finding: Literal["blocked", "door_closed"] | None
+    by: str | None
+    until_s: float
+
+    @classmethod
+    def of(cls, way: "ClosedWay") -> "ClosedWayView":
+        """What is told of a closed way."""
+        told = way.told
+        return cls(
+            between=list(way.between),
+            finding=None if told is None else "door_closed" if told.is_door else "blocked",
+            by=None if told is None else told.by,
+            until_s=way.until_s,
+        )
 
 
 class PlanChangeView(View):
@@ -98,48 +163,18 @@ class FleetView(View):
     now_s: float
     places: list[str]
     robots: list[FleetRobot]
-    closed: list[list[str]]
+    closed: list[ClosedWayView]
     changes: list[PlanChangeView]
 
     @classmethod
-    def of(
-        cls,
-        site: UUID,
-        places: Sequence[str],
-        out_of_service: Mapping[str, str],
-        dispatcher: "Dispatcher",
-    ) -> "FleetView":
+    def of(cls, fleet: "FleetAtWork", dispatcher: "Dispatcher") -> "FleetView":
         """What is told of the fleet of a site."""
-        running, stops = dispatcher.fleet, dispatcher.fleet.stops()
-        names = list(running.robots)
-        aboard: dict[str, list[str]] = {name: [] for name in names}
-        for name, item in running.items.items():
-            if item.robot is not None and item.open:
-                aboard[names[item.robot]].append(name)
         return cls(
-            site=site,
-            now_s=dispatcher.now_s,
-            places=list(places),
-            robots=[
-                FleetRobot(
-                    robot=name,
-                    works=robot.works,
-                    out_of_service=out_of_service.get(name),
-                    aboard=aboard[name],
-                    stops=[
-                        PlannedStop(
-                            place=each.place,
-                            action=each.action,
-                            request=each.item,
-                            begins_s=each.begin_s,
-                            slack_s=min(each.slack_s, 1e9),
-                        )
-                        for each in stops[name]
-                    ],
-                )
-                for name, robot in running.robots.items()
-            ],
-            closed=[sorted(each) for each in dispatcher.closed_until_s()],
+            site=fleet.site,
+            now_s=fleet.shown_s,
+            places=fleet.places.names,
+            robots=_robots(fleet, dispatcher),
+            closed=[ClosedWayView.of(each) for each in fleet.closed_ways.now()],
             changes=[
                 PlanChangeView(
                     number=each.number,
@@ -151,3 +186,49 @@ class FleetView(View):
                 for each in dispatcher.log
             ],
         )
+
+
+def _robots(fleet: "FleetAtWork", dispatcher: "Dispatcher") -> list[FleetRobot]:
+    running, stops = dispatcher.fleet, dispatcher.stops()
+    names = list(running.robots)
+    aboard: dict[str, list[str]] = {name: [] for name in names}
+    for name, item in running.items.items():
+        if item.robot is not None and item.open:
+            aboard[names[item.robot]].append(name)
+    homes = {each.name: dispatcher.building.find(each.start) for each in dispatcher.setting.robots}
+    bases = {name: fleet.base(name) for name in names}
+    return [
+        FleetRobot(
+            robot=name,
+            works=robot.works,
+            connected=fleet.is_connected(name),
+            out_of_service=fleet.out_of_service.get(name),
+            home=homes[name],
+            run=fleet.run_of(name),
+            pose=None if (base := bases[name]) is None else RobotPose.of(base),
+            aboard=aboard[name],
+            at_work=_at_work(name, fleet, dispatcher),
+            stops=[_stop(*each) for each in stops[name]],
+        )
+        for name, robot in running.robots.items()
+    ]
+
+
+def _at_work(robot: str, fleet: "FleetAtWork", dispatcher: "Dispatcher") -> FleetLeg | None:
+    leg = next((each for each in dispatcher.legs_under_way() if each.robot == robot), None)
+    if leg is not None:
+        return FleetLeg(place=leg.place, action=leg.action, request=leg.booking)
+    errand = fleet.errands.get(robot)
+    return None if errand is None else FleetLeg(place=errand.place, action=None, request=None)
+
+
+def _stop(stop: "NextStop", action: LegAction) -> PlannedStop:
+    return PlannedStop(
+        place=stop.place,
+        action=action,
+        request=stop.item,
+        begins_s=stop.begin_s,
+        done_s=stop.done_s,
+        slack_s=min(stop.slack_s, 1e9),
+        partner=stop.partner,
+    )

@@ -126,13 +126,17 @@ class NodeTaken(NodeEvent):
 
 
 class StepStarted(NodeEvent):
-    """A behavior's step has begun (1 is the first)."""
+    """A behavior's step has begun (1 is the first).
+
+    `phase`: what it is for, as the robot says; None in the journals of an older Mend.
+    """
 
     type: Literal["step_started"] = "step_started"
     robot: str
     execution: UUID
     step: int
     step_name: str
+    phase: str | None = None
 
 
 class IssueRaised(NodeEvent):
@@ -140,7 +144,7 @@ class IssueRaised(NodeEvent):
 
     `last_seen`: where the last look before it saw the object (base frame, metres). `outlook`: which
     attempt this is, of how many, and what follows if it fails. `item`: what the leaf carries for
-    people, and `message`: what it tells them, if it does.
+    people, `message`: what it tells them, and `person`: whom it escorts, if it does.
     """
 
     type: Literal["issue_raised"] = "issue_raised"
@@ -157,6 +161,7 @@ class IssueRaised(NodeEvent):
     outlook: Outlook | None = None
     item: str | None = None
     message: str | None = None
+    person: str | None = None
 
 
 class ClipPicture(EventModel):
@@ -535,6 +540,17 @@ class RobotResumed(RobotEvent):
     step: int
 
 
+class WayFound(RobotEvent):
+    """The robot has found a way to be barred, and goes round, or open, as it has passed it.
+
+    `between`: neighbouring places, the one that it came from first.
+    """
+
+    type: Literal["way_found"] = "way_found"
+    finding: str
+    between: list[str]
+
+
 NO_RUN = UUID(int=0)
 """The `run` of what belongs to none."""
 
@@ -684,10 +700,23 @@ class RequestChanged(FleetEvent):
     author: Author | None = None
 
 
+class PlannedTransfer(EventModel):
+    """A request's thing is to change robots: what that saves, as planned.
+
+    `sooner_s`: how much sooner it is delivered than by one robot alone; `less_m`: how much less far
+    all robots drive. Both are None where one alone could not bring it.
+    """
+
+    request: str
+    sooner_s: float | None
+    less_m: float | None
+
+
 class PlanChanged(FleetEvent):
     """The plan of a fleet became another one, and why; whom that touches.
 
-    `said`: a sentence by request or robot.
+    `said`: a sentence by request or robot. `transfers`: what is to change robots that was not
+    before, or not from this robot; the journals of an older Mend do not tell.
     """
 
     type: Literal["plan_changed"] = "plan_changed"
@@ -696,6 +725,7 @@ class PlanChanged(FleetEvent):
     requests: list[str]
     robots: list[str]
     said: dict[str, str]
+    transfers: list[PlannedTransfer] = []
 
 
 class FleetTold(FleetEvent):
@@ -731,10 +761,41 @@ class LegBegun(LegEvent):
 
 
 class LegEnded(LegEvent):
-    """What became of a leg, why where it was not done, and where its robot is then."""
+    """What became of a leg, why where it was not done, and where its robot is then.
+
+    `driven_m`: how far its robot has driven meanwhile, by its wheels, and `barred_s` how long it
+    stood on its way before what barred it; None where that is not known, and in the journals of an
+    older Mend.
+    """
 
     type: Literal["leg_ended"] = "leg_ended"
     outcome: str
+    reason: str | None
+    at: str
+    driven_m: float | None = None
+    barred_s: float | None = None
+
+
+class ErrandBegun(FleetEvent):
+    """A robot that carries out no leg is sent from `start` to a place: `author` wants it there.
+
+    Without an author it goes out of another robot's way.
+    """
+
+    type: Literal["errand_begun"] = "errand_begun"
+    robot: str
+    place: str
+    start: str
+    author: Author | None = None
+
+
+class ErrandEnded(FleetEvent):
+    """Whether it has come there, why where it has not, and the place that it is at then."""
+
+    type: Literal["errand_ended"] = "errand_ended"
+    robot: str
+    place: str
+    came: bool
     reason: str | None
     at: str
 
@@ -778,6 +839,7 @@ AnyEvent = Annotated[
     | RobotBack
     | RobotHolding
     | RobotResumed
+    | WayFound
     | DocumentKept
     | DocumentDeleted
     | SignedIn
@@ -792,7 +854,9 @@ AnyEvent = Annotated[
     | PlanChanged
     | FleetTold
     | LegBegun
-    | LegEnded,
+    | LegEnded
+    | ErrandBegun
+    | ErrandEnded,
     Field(discriminator="type"),
 ]
 

@@ -12,11 +12,13 @@ from mend.tasks.frames import Frame
 class SeenBase:
     """A robot's base frame in the scene's, and how old that is.
 
-    `age_s`: of the run's clock; inf of a robot that has not shown where it is.
+    `age_s`: of the run's clock; inf of a robot that has not shown where it is. `covariance`: of
+    its place along the axes of its map, xx, xy, yy (m2); None where it does not tell.
     """
 
     pose: PoseValues
     age_s: float
+    covariance: Sequence[float] | None = None
 
 
 NEVER_SEEN = SeenBase(IDENTITY, math.inf)

@@ -82,7 +82,9 @@ class KnownRobot:
         self._heard_of: set[str] = set()
         self._refused: tuple[str, str] | None = None
         self._unasked_reports = self._new_boots = 0
-        self._poses_hz = 0.0
+        self._poses_hz = self._always_hz = 0.0
+        self.poses: Poses | None = None
+        """The newest of this start of its program."""
         self._absence: asyncio.TimerHandle | None = None
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -131,6 +133,7 @@ class KnownRobot:
             if self.hello is not None:
                 self._untaken.clear()
             self._received.clear()
+            self.poses = None
         self._heard_of.clear()
         self._received[hello.boot] = received
         self.hello, self.session = hello, session
@@ -142,7 +145,7 @@ class KnownRobot:
         for command in self._untaken.values():
             session.send(command)
         session.do(self._announce)
-        if self._poses_hz > 0.0:
+        if max(self._poses_hz, self._always_hz) > 0.0:
             self._ask_for_poses()
 
     def refuse(self, reason: str, limit: LimitName) -> None:
@@ -291,10 +294,16 @@ class KnownRobot:
             self._poses_hz = rate_hz
             self._ask_for_poses()
 
+    def always_show_poses(self, rate_hz: float) -> None:
+        """Have it send them at least so often, whoever has it, and whether any run wants them."""
+        if rate_hz != self._always_hz:
+            self._always_hz = rate_hz
+            self._ask_for_poses()
+
     def _ask_for_poses(self) -> None:
         shows = self.hello is not None and self.hello.shows is not None
         if self.session is not None and shows:
-            self.session.send(ShowPoses(rate_hz=self._poses_hz))
+            self.session.send(ShowPoses(rate_hz=max(self._poses_hz, self._always_hz)))
 
     async def take_picture(self, camera: str, timeout_s: float) -> bytes:
         """A camera's picture (JPEG). Raises `NotFoundError` or `ConflictError`."""
@@ -329,6 +338,7 @@ class KnownRobot:
         self._answer(picture.command, lambda future: future.set_result(jpeg))
 
     def receive_poses(self, poses: Poses) -> None:
+        self.poses = poses
         if self._sink is not None and self._sink_sees_it:
             self._sink.robot_posed(self.name, poses)
 

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from mend.errors import ConflictError
 from mend.robots.link.channel import Channel, ChannelClosedError
-from mend.robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError
+from mend.robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError, Poses
 from mend.server.journal.journal import Journal, JournalClosedError, JournalReadError
 from mend.server.limits import Limits
 from mend.server.pace import Pace
@@ -87,6 +87,14 @@ class RobotRegistry:
         """Have a robot send its poses at most so often, also on its later connections; 0: never."""
         if robot in self._robots:
             self._robots[robot].show_poses(rate_hz)
+
+    def always_show_poses(self, robot: str, rate_hz: float) -> None:
+        """Have a robot send them at least so often, whether or not a run wants them."""
+        self._known(robot).always_show_poses(rate_hz)
+
+    def poses(self, robot: str) -> Poses | None:
+        """The newest poses of a robot that sends any."""
+        return self._robots[robot].poses if robot in self._robots else None
 
     async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes:
         """A camera's picture now, as JPEG.

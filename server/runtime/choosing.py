@@ -26,14 +26,15 @@ class Choice:
 def suitabilities(
     state: RunState, proxy: RobotProxy, leaves: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """How well a robot can do each leaf; 0 where it cannot, or another has what it carries."""
+    """How well a robot can do each leaf; 0 where it cannot, or another takes that along."""
     nodes = state.tree.nodes
     by_code = np.array([proxy.suitability(each) for each in nodes.behaviors], dtype=np.float64)
     suitable = by_code[nodes.behavior_codes[leaves]]
+    robot = proxy.robot
     if state.carriers:
         for number in np.flatnonzero(suitable).tolist():
-            item = state.tree.leaf_definition(int(leaves[number])).item
-            if item is not None and state.carriers.get(item, proxy.robot) != proxy.robot:
+            entrusted = state.tree.leaf_definition(int(leaves[number])).entrusted
+            if entrusted is not None and state.carriers.get(entrusted, robot) != robot:
                 suitable[number] = 0.0
     team = proxy.team
     if team is not None and team.shares:
@@ -66,6 +67,7 @@ def choose(state: RunState, proxy: RobotProxy) -> Choice | None:
     """The leaf that a robot takes next; None if there is none that it can do, or do now."""
     leaves = state.tree.eligible_leaves()
     able = able_mask(state, proxy, leaves)
+    able &= _with_company_mask(state, proxy, leaves, able)
     if proxy.team is not None and proxy.team.has_company:
         able &= _free_mask(state, proxy, proxy.team, leaves, able)
     if not able.any():
@@ -75,6 +77,21 @@ def choose(state: RunState, proxy: RobotProxy) -> Choice | None:
     if leaf is None:
         return None
     return Choice(leaf, _candidates(state, leaves[able], potentials[able]))
+
+
+def _with_company_mask(
+    state: RunState,
+    proxy: RobotProxy,
+    leaves: NDArray[np.int64],
+    able: NDArray[np.bool_],
+) -> NDArray[np.bool_]:
+    """What a robot may do that has met people: as long as it can lead any of them, nothing else."""
+    theirs = np.zeros(leaves.size, dtype=np.bool_)
+    if state.carriers:
+        for number in np.flatnonzero(able).tolist():
+            person = state.tree.leaf_definition(int(leaves[number])).person
+            theirs[number] = person is not None and state.carriers.get(person) == proxy.robot
+    return theirs if theirs.any() else np.ones(leaves.size, dtype=np.bool_)
 
 
 def _free_mask(

@@ -34,6 +34,7 @@ _WITHOUT_OBJECT = (
     Expectation.LOADED,
     Expectation.UNLOADED,
     Expectation.CHARGED,
+    Expectation.ACCOMPANIED,
 )
 """What a look may be asked to wait for that is about no object."""
 
@@ -278,6 +279,8 @@ class DialogueLooks:
     def _seen(
         self, dialogue: DialogueState, proxy: RobotProxy, expected: Expectation | None
     ) -> LookOutcome:
+        if proxy.led_round and expected is Expectation.WAY_CLEAR:
+            expected = Expectation.LED_ROUND
         fulfilled = set() if expected is None else {expected}
         if self._is_at_place(dialogue, proxy):
             fulfilled.add(Expectation.AT_PLACE)

@@ -238,6 +238,7 @@ def issue_of(raised: ev.IssueRaised) -> Issue:
         guesses=() if raised.detection is None else tuple(raised.detection.guesses),
         item=raised.item,
         message=raised.message,
+        person=raised.person,
     )
 
 

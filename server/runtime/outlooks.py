@@ -73,6 +73,8 @@ def _unchanged(state: RunState, leaf: int, raised: ev.IssueRaised) -> int:
     before = next((each for each in reversed(state.issues.get(leaf, [])) if each.interrupts), None)
     if before is None or before.issue != raised.issue or before.outlook is None:
         return 1
+    if _barred_between(before) != _barred_between(raised):
+        return 1
     dialogue = _dialogue_about(state, before)
     if dialogue is None or (dialogue.resolved is not None and dialogue.resolved.helped):
         return 1
@@ -84,6 +86,10 @@ def _unchanged(state: RunState, leaf: int, raised: ev.IssueRaised) -> int:
     if about_the_part and _is_elsewhere(then, raised.last_seen):
         return 1
     return before.outlook.unchanged + 1
+
+
+def _barred_between(raised: ev.IssueRaised) -> list[str]:
+    return [] if raised.detection is None else sorted(raised.detection.between)
 
 
 def _is_elsewhere(

@@ -14,6 +14,7 @@ from mend.robots.link.messages import (
     ReportBody,
     Resumed,
     StepStarted,
+    WayFound,
 )
 from mend.server.journal import events as ev
 from mend.server.plain_text import plain
@@ -52,6 +53,15 @@ class ReportEvents:
                 events = [
                     ev.RobotResumed(**self._context.stamp(), robot=proxy.robot, step=body.step)
                 ]
+            case WayFound():
+                events = [
+                    ev.WayFound(
+                        **self._context.stamp(),
+                        robot=proxy.robot,
+                        finding=body.finding,
+                        between=body.between,
+                    )
+                ]
             case Intervened():
                 events = [self._intervened(body)]
             case Rejected():
@@ -89,6 +99,7 @@ class ReportEvents:
                 execution=execution.id,
                 step=body.step,
                 step_name=body.name,
+                phase=body.phase,
             )
         ]
 
@@ -118,6 +129,7 @@ class ReportEvents:
             place=leaf.place,
             item=leaf.item,
             message=leaf.message,
+            person=leaf.person,
             execution=execution.id,
             step=body.step,
             interrupts=body.interrupts,

@@ -41,7 +41,7 @@ def _missing(state: RunState, leaf: int, left_out: ev.NodeLeftOut) -> ev.Missing
     return ev.MissingPart(
         node=left_out.node,
         name=left_out.name,
-        object=definition.object or definition.item or left_out.name,
+        object=definition.object or definition.entrusted or left_out.name,
         place=definition.place or left_out.name,
         left_out_by=left_out.helper,
         nowhere=definition.object is None,

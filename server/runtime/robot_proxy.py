@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from mend.robots.arm.shared_space import Flat
 from mend.robots.link.messages import (
     CommandBody,
+    Driven,
     FeltLoad,
     FinishedResult,
     Hello,
@@ -93,6 +94,8 @@ class RobotProxy:
     """What space it has beyond where its arm rests; `Team` says when it may have it."""
     doing: RobotActivity = RobotActivity.ABSENT
     hello: Hello | None = None
+    driven: Driven | None = None
+    """What its base has driven since it booted, as it said last."""
     gone_for_good: bool = False
     restarts: int = 0
     livelock: Livelock = field(default_factory=Livelock)
@@ -118,6 +121,8 @@ class RobotProxy:
     """Why the last look saw nothing of the table."""
     felt: FeltLoad | None = None
     """What its basket felt at the last look, where that was not what was looked for."""
+    led_round: bool = False
+    """Whether the last look saw that another way leads round what is in the way."""
 
     @property
     def room(self) -> RoomLimits | None:
@@ -163,6 +168,7 @@ class RobotProxy:
 
     def connect(self, hello: Hello) -> None:
         self.hello = hello
+        self.driven = hello.driven
         self.looked_at = None
         self.command = self.purpose = None
         executing = hello.executing
@@ -275,6 +281,7 @@ class RobotProxy:
             self.seen_at = time
             self.last_seen |= {name: (time, each) for name, each in self.seen.items()}
         self.held, self.felt = looked.held, looked.felt
+        self.led_round = looked.led_round
         self.there = frozenset(looked.there)
         self.gripper = (
             *self.frame.to_scene(looked.gripper.x, looked.gripper.y),

@@ -278,6 +278,7 @@ class Run:
             return
         self._context.clock.observe(report.time)
         proxy.silent_since = None
+        proxy.driven = report.driven or proxy.driven
         body = report.body
         if isinstance(body, StepStarted):
             proxy.restarts = 0

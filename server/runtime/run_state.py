@@ -85,7 +85,7 @@ class RunState:
         self.last_handled: dict[str, int] = {}
         """Which leaf was started last for an object: the one that says where it is to be."""
         self.carriers: dict[str, str] = {}
-        """Which robot was given each item last, or handed it over."""
+        """Which robot was given each item, or met each person, last, or handed it over."""
         self.results: dict[FinishedResult, int] | None = None
         """What finished leaves left behind, where nothing has changed that since it was derived."""
         self.helped_retries: Counter[int] = Counter()
@@ -261,9 +261,9 @@ class RunState:
     @_apply.register
     def _(self, event: ev.NodeDone) -> None:
         leaf = self.tree.index_of(event.node)
-        item = self.tree.leaf_definition(leaf).item
-        if item is not None and event.robot is not None:
-            self.carriers[item] = event.robot
+        entrusted = self.tree.leaf_definition(leaf).entrusted
+        if entrusted is not None and event.robot is not None:
+            self.carriers[entrusted] = event.robot
         self._finish(leaf)
 
     @_apply.register

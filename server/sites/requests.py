@@ -13,7 +13,8 @@ class FleetOptions(BaseModel):
 
     `capacity`: what fits into a basket, in loads of requests; `transfer_places`: where things may
     change robots; `answers`: helpers (`live`), or a simulated person who always says yes, and does
-    what was asked for (`late`: the first question of a leg is answered by nobody).
+    what was asked for (`late`: nobody answers the first question of a leg, nor when it is put
+    again).
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)

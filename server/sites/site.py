@@ -4,14 +4,16 @@ import asyncio
 import logging
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
-from uuid import UUID
+from uuid import UUID, uuid4
 
 from mend.errors import ConflictError
-from mend.robots.link.messages import Held, Hello, Holding, Poses, Report
+from mend.robots.link.messages import Avoid, ClosedWay, Held, Hello, Holding, Poses, Report
 from mend.server.journal.journal import Entry, Journal, Receipt
+from mend.server.poses.bases import SeenBase, in_scene
 from mend.server.robots.registry import RobotRegistry
 from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
 from mend.server.runtime.team import Neighbour
+from mend.server.sites.odometer import Odometer
 from mend.server.sites.running_world import RunningWorld
 from mend.tasks.frames import Frame
 from mend.tasks.potential import Point
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+BASES_HZ = 2.0
+"""How often robots whose site is watched say where they are, by their clock."""
 MAX_RESTARTS = 20
 """So often a world is started again by itself without a report of any robot since."""
 
@@ -51,6 +55,7 @@ class Site:
         self._frames = dict(robots)
         self._resting = {name: self._at_rest(name) for name in robots}
         self._seen_at: dict[str, Point] = {}
+        self._odometers: dict[str, Odometer] = {}
         self._handed_over: dict[str, RobotProxy] = {}
         self._runs: dict[UUID, Run] = {}
         self.forgotten = False
@@ -58,6 +63,7 @@ class Site:
         self.changed: Callable[[], None] = lambda: None
         """Told when a robot has come, when a run has given robots back, and when time has passed
         for which somebody had waited."""
+        self._closed: Mapping[frozenset[str], float] = {}
         self._restarts = 0
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -86,6 +92,34 @@ class Site:
         """Where a robot was when a run's look last said so, in the scene's frame."""
         return self._seen_at.get(robot)
 
+    def show_bases(self) -> None:
+        """Have its robots say where they are, also those that no run has."""
+        for robot in self._frames:
+            self._registry.always_show_poses(robot, BASES_HZ)
+
+    @property
+    def shown_s(self) -> float:
+        """The world's clock, as far as reports and poses tell: for who watches it."""
+        poses = [self._registry.poses(robot) for robot in self._frames]
+        return max(self.world.time.latest_s, *(e.time for e in poses if e is not None), 0.0)
+
+    def base(self, robot: str) -> SeenBase | None:
+        """Where a robot says that it is, in the scene's frame; None until it has."""
+        poses = self._registry.poses(robot)
+        if poses is None:
+            return None
+        age_s = self.shown_s - poses.time
+        return SeenBase(in_scene(self._frames[robot], poses.base), age_s, poses.covariance)
+
+    def odometer(self, robot: str) -> Odometer | None:
+        """What a robot had driven when it last said so while no run had it, or at a run's end."""
+        return self._odometers.get(robot)
+
+    def _note_driven(self, proxy: RobotProxy) -> None:
+        if proxy.hello is not None and proxy.driven is not None:
+            told = Odometer(proxy.hello.boot, proxy.driven)
+            self._odometers[proxy.robot] = told.later(self._odometers.get(proxy.robot))
+
     def let_time_pass(self, until_s: float, rate: float | None) -> bool:
         """Have the world's clock run until then, also where no run has a robot.
 
@@ -97,6 +131,31 @@ class Site:
                 proxy.hold(until_s, rate)
                 return True
         return False
+
+    def keep_off(self, closed: Mapping[frozenset[str], float]) -> None:
+        """Have its robots keep off ways between neighbouring places, each until a time (s).
+
+        Robots that do not know of such things go on as they do.
+        """
+        if closed == self._closed:
+            return
+        self._closed = dict(closed)
+        for robot in self._frames:
+            if self.is_connected(robot):
+                self._tell_ways(robot)
+
+    def _told_on_coming(self, robot: str) -> None:
+        if self._closed:
+            self._tell_ways(robot)
+
+    def _tell_ways(self, robot: str) -> None:
+        hello = self._registry.hello(robot)
+        if hello is not None and hello.avoids_ways:
+            ways = [
+                ClosedWay(between=sorted(way), until=until_s)
+                for way, until_s in self._closed.items()
+            ]
+            self._registry.send(robot, str(uuid4()), Avoid(ways=ways), renews=False)
 
     # --- Its world ----------------------------------------------------------------------------
 
@@ -148,11 +207,13 @@ class Site:
 
     async def robot_connected(self, robot: str, hello: Hello) -> None:
         """A robot is there, with nobody who has work for it."""
+        self._told_on_coming(robot)
         proxy = self._resting.get(robot)
         if proxy is None:
             return
         area, was_there = proxy.area, proxy.hello is not None and proxy.hello.boot == hello.boot
         proxy.connect(hello)
+        self._note_driven(proxy)
         self.world.came(robot)
         self.world.time.heard(hello.time)
         if was_there or hello.executing is not None:
@@ -171,6 +232,8 @@ class Site:
         proxy = self._resting.get(robot)
         if proxy is None:
             return
+        proxy.driven = report.driven or proxy.driven
+        self._note_driven(proxy)
         if isinstance(report.body, Holding):
             proxy.hold_execution(report.body)
             self.tell_neighbours(None)
@@ -179,7 +242,7 @@ class Site:
         self.changed()
 
     def robot_posed(self, robot: str, poses: Poses) -> None:
-        """Nobody watches a robot that no run has."""
+        """No run watches it; what it said last the registry knows."""
 
     async def robot_lost(self, robot: str, reason: str) -> None:
         """A robot's connection is gone and has not come back."""
@@ -195,6 +258,7 @@ class Site:
 
     def came(self, proxy: RobotProxy) -> None:
         """A robot of a run has connected: it goes to rest first if it had not yet."""
+        self._told_on_coming(proxy.robot)
         self.world.came(proxy.robot)
         before = self._handed_over.pop(proxy.robot, None)
         if before is not None and before.doing is RobotActivity.RETREATING:
@@ -210,6 +274,7 @@ class Site:
             resting = self._at_rest(robot)
             resting.hello, resting.area = proxy.hello, proxy.area
             self._seen_at[robot] = proxy.gripper
+            self._note_driven(proxy)
             self._resting[robot] = resting
         self.tell_neighbours(run)
         self.changed()

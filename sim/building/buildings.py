@@ -98,6 +98,7 @@ class Buildings:
                         body.whereabouts,
                         world.baskets[number],
                         world.batteries[number],
+                        world.companions[number],
                     )
                 ],
             )

@@ -5,10 +5,9 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from mend.maps.building.building import Caller, Elevator
+from mend.maps.building.cabin import CABIN_DOOR_S
 from mend.tasks.transitions import Transitions
 
-DOOR_S = 2.0
-"""Its door takes so long to open, and to shut."""
 HELD_S = 60.0
 """So long it stands open for who does not get in."""
 
@@ -35,13 +34,15 @@ _CHANGES = Transitions(
 class Call:
     """A robot by its number wants from floor to floor.
 
-    `to`: the floor whose button was pressed, None until somebody has pressed one.
+    `to`: the floor whose button was pressed, None until somebody has pressed one. `stay_open`:
+    who is in it waits for somebody else.
     """
 
     robot: int
     begin: str
     wants: str
     to: str | None
+    stay_open: bool = False
 
 
 @dataclass(slots=True)
@@ -62,14 +63,15 @@ class Cabin:
     heading_for: str | None = None
     calls: list[Call] = field(default_factory=list)
 
-    def call(self, robot: int, begin: str, wants: str) -> None:
+    def call(self, robot: int, begin: str, wants: str, *, stay_open: bool = False) -> None:
         """A robot wants a ride; it says so as often as it likes."""
         known = self.call_of(robot)
         if known is not None and known.wants == wants:
+            known.stay_open = stay_open
             return
         self.withdraw(robot)
         to = wants if self.plan.called_by is Caller.ROBOTS else None
-        self.calls.append(Call(robot, begin, wants, to))
+        self.calls.append(Call(robot, begin, wants, to, stay_open))
 
     def call_of(self, robot: int) -> Call | None:
         """What a robot wants of it."""
@@ -102,7 +104,7 @@ class Cabin:
         if self.state is CabinState.MOVING:
             assert self.heading_for is not None, "it moves to a floor"
             self.floor, self.heading_for = self.heading_for, None
-            self.calls = [e for e in self.calls if e.robot not in inside or e.to != self.floor]
+            self._take_leave(inside)
             self._open(time_s)
             return True
         served = self.serving(inside)
@@ -126,8 +128,10 @@ class Cabin:
             if inside or not door_is_free:
                 return
         elif served.robot in inside:
+            if served.stay_open:
+                return
             if served.to == self.floor:
-                self.withdraw(served.robot)
+                self._take_leave(inside)
                 return
         elif served.begin == self.floor:
             if time_s - self.since_s < HELD_S:
@@ -135,7 +139,15 @@ class Cabin:
             self.withdraw(served.robot)
         if door_is_free:
             self.state = _CHANGES.require(self.state, CabinState.SHUT)
-            self.until_s = time_s + DOOR_S
+            self.until_s = time_s + CABIN_DOOR_S
+
+    def _take_leave(self, inside: Sequence[int]) -> None:
+        """Who is where they want to be wants nothing more; who is not waits for another button."""
+        for call in [each for each in self.calls if each.robot in inside and each.to == self.floor]:
+            if call.wants == self.floor:
+                self.calls.remove(call)
+            else:
+                call.to = None
 
     def _next_floor(self, served: Call, inside: Sequence[int]) -> str:
         assert served.to is not None, "it was pressed"
@@ -153,4 +165,4 @@ class Cabin:
     def _open(self, time_s: float) -> None:
         self.state = _CHANGES.require(self.state, CabinState.OPEN)
         self.since_s = time_s
-        self.until_s = time_s + DOOR_S
+        self.until_s = time_s + CABIN_DOOR_S

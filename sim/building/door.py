@@ -1,16 +1,21 @@
 """A door of the world: open or shut, by itself or by people."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from mend.maps.building.building import Door, DoorOpening
 from mend.maps.building.clearance import distances_m
+from mend.sim.building.floor_pose import FloorPose
 
 NOTICES_M = 1.8
 """A door that opens itself does so when somebody is so near."""
 _STAYS_OPEN_S = 4.0
 """After the last one has gone by."""
+_OPENS_M = 1.0
+_HOLDS_S = 10.0
+"""Who walks opens a door that is so near, for so long."""
 
 
 @dataclass(slots=True)
@@ -70,3 +75,18 @@ class WorldDoor:
     def hold_open(self, until_s: float) -> None:
         """It is open, and does not fall shut before then."""
         self.is_shut, self.shuts_s = False, until_s
+
+
+def open_doors(doors: Iterable[WorldDoor], at: FloorPose, time_s: float) -> bool:
+    """Somebody who walks opens what is shut before them; whether anything was."""
+    opened = False
+    for door in doors:
+        if (
+            door.is_shut
+            and door.name.startswith(f"{at.floor}/")
+            and door.may_be_passed(time_s)
+            and door.distance_m(at.x, at.y) < _OPENS_M
+        ):
+            door.hold_open(time_s + _HOLDS_S)
+            opened = True
+    return opened

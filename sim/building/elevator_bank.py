@@ -2,19 +2,43 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mend.documents.strict_model import StrictModel
 from mend.maps.building.building import Building
-from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of
+from mend.maps.building.cabin import CABIN_M, CORNER_M, cabin_walls, stop_of
 from mend.robots.base.ways import Ride
 from mend.sim.building.building_robot import BuildingRobot
 from mend.sim.building.cabin import Cabin, CabinState, Call
+from mend.sim.building.floor_pose import FloorPose
 
 Circle = tuple[float, float, float]
+Point = tuple[float, float]
 Matrix = NDArray[np.float64]
+
+
+class Rider(Protocol):
+    """Who may ride in a cabin: a robot, or a person with one."""
+
+    @property
+    def at(self) -> FloorPose: ...
+
+    @property
+    def radius_m(self) -> float: ...
+
+    @property
+    def moving(self) -> bool: ...
+
+    def ride(self, room: str) -> None:
+        """Be in a cabin that is shut."""
+        ...
+
+    def get_out_at(self, floor: str, shift: tuple[float, float]) -> None:
+        """Be on a floor, where a shaft is so much shifted (metres)."""
+        ...
 
 
 class CabinSnapshot(StrictModel):
@@ -74,7 +98,7 @@ class ElevatorBank:
     def is_in_a_cabin(self, floor: str, x: float, y: float, radius_m: float) -> bool:
         """Whether something round there would be in the room of any cabin."""
         return any(
-            floor in stops and math.dist(stops[floor], (x, y)) < CABIN_M + radius_m
+            floor in stops and math.dist(stops[floor], (x, y)) < CORNER_M + radius_m
             for stops in self._stops.values()
         )
 
@@ -84,43 +108,53 @@ class ElevatorBank:
         self,
         time_s: float,
         robots: Sequence[BuildingRobot],
+        led: Mapping[int, Rider],
         circles: Callable[[str], Sequence[Circle]],
     ) -> None:
-        """One cycle: cabins move, with whoever is in them."""
+        """One cycle: cabins move, with whoever is in them; `led`: people, by their robots."""
         for cabin in self.cabins.values():
             inside = [n for n, each in enumerate(robots) if self._is_inside(cabin, each)]
-            before, riders = cabin.floor, [robots[each] for each in inside]
+            before, riders = cabin.floor, list[Rider](robots[each] for each in inside)
+            with_them = (led[each] for each in inside if each in led)
+            riders += [each for each in with_them if self._is_inside(cabin, each)]
             free = self._is_door_free(cabin, riders, circles)
             cabin.pass_time(time_s, inside, door_is_free=free)
-            for robot in riders:
-                self._take_along(cabin, robot, before)
+            for rider in riders:
+                self._take_along(cabin, rider, before)
 
-    def _take_along(self, cabin: Cabin, robot: BuildingRobot, before: str) -> None:
-        """Have a robot where its cabin is now; `before` is the floor at which that was."""
+    def _take_along(self, cabin: Cabin, rider: Rider, before: str) -> None:
+        """Have a rider where its cabin is now; `before` is the floor at which that was."""
         if cabin.state is not CabinState.OPEN:
-            robot.ride(self.room(cabin.name))
-        elif robot.at.floor != cabin.floor:
+            rider.ride(self.room(cabin.name))
+        elif rider.at.floor != cabin.floor:
             stops = self._stops[cabin.name]
             (x0, y0), (x1, y1) = stops[before], stops[cabin.floor]
-            robot.get_out_at(cabin.floor, (x1 - x0, y1 - y0))
+            rider.get_out_at(cabin.floor, (x1 - x0, y1 - y0))
 
-    def _is_inside(self, cabin: Cabin, robot: BuildingRobot) -> bool:
-        """Whether all of a robot is in a cabin."""
-        if robot.at.floor == self.room(cabin.name):
+    def stop_around(self, rider: Rider) -> Point | None:
+        """The middle of the cabin that somebody is in; None for who is in none."""
+        for name, cabin in self.cabins.items():
+            if self._is_inside(cabin, rider):
+                return self._stops[name][cabin.floor]
+        return None
+
+    def _is_inside(self, cabin: Cabin, rider: Rider) -> bool:
+        """Whether all of somebody is in a cabin."""
+        if rider.at.floor == self.room(cabin.name):
             return True
-        away_m = math.dist(self._stops[cabin.name][cabin.floor], (robot.at.x, robot.at.y))
-        return cabin.is_open_at(robot.at.floor) and away_m < CABIN_M - robot.radius_m
+        away_m = math.dist(self._stops[cabin.name][cabin.floor], (rider.at.x, rider.at.y))
+        return cabin.is_open_at(rider.at.floor) and away_m < CABIN_M - rider.radius_m
 
     def _is_door_free(
         self,
         cabin: Cabin,
-        riders: Sequence[BuildingRobot],
+        riders: Sequence[Rider],
         circles: Callable[[str], Sequence[Circle]],
     ) -> bool:
-        """Whether nobody is in the room of a cabin but robots that stand in it."""
+        """Whether nobody is in the room of a cabin but who stands in it."""
         x, y = self._stops[cabin.name][cabin.floor]
         within = sum(
-            math.dist((x, y), each[:2]) < CABIN_M + each[2] for each in circles(cabin.floor)
+            math.dist((x, y), each[:2]) < CORNER_M + each[2] for each in circles(cabin.floor)
         )
         return within <= len(riders) and not any(each.moving for each in riders)
 
@@ -174,8 +208,9 @@ class RobotElevators:
         self._cabins = cabins
         self._number = number
 
-    def ask(self, ride: Ride) -> None:
-        self._cabins[ride.elevator].call(self._number, ride.from_floor, ride.to_floor)
+    def ask(self, ride: Ride, *, stay_open: bool = False) -> None:
+        cabin = self._cabins[ride.elevator]
+        cabin.call(self._number, ride.from_floor, ride.to_floor, stay_open=stay_open)
 
     def withdraw(self) -> None:
         for each in self._cabins.values():

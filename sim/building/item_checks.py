@@ -1,11 +1,13 @@
-"""What in the order of a task keeps things from being carried as its leaves say."""
+"""What in the order of a task keeps things from being carried, or people from being escorted."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from mend.documents.problem import list_names
 from mend.robots.base.behaviors.collect_item import CollectItem
+from mend.robots.base.behaviors.escort import Escort
 from mend.robots.base.behaviors.hand_over_item import HandOverItem
+from mend.robots.base.behaviors.meet_person import MeetPerson
 from mend.sim.building.goods import MOST_ITEMS
 from mend.tasks.definition import BehaviorNode, GoalNode
 from mend.tasks.scene_problem import SceneProblem
@@ -21,36 +23,87 @@ Whereabouts = Mapping[str, frozenset[str]]
 """Where each item may be; one that is not in it is anywhere."""
 
 
+@dataclass(frozen=True, slots=True)
+class Errand:
+    """What robots fetch with one behavior and bring with another, and how its mistakes are told.
+
+    `of`: what a leaf handles. `stays`: it is where it was brought until it is fetched there.
+    `handles`: what several children of an AND may not do. In the sentences `{leaf}` is a leaf's
+    name, `{what}` what it handles, `{held}` what robots have, `{room}` for how many there is room.
+    """
+
+    fetch: str
+    bring: str
+    of: Callable[[BehaviorNode], str | None]
+    stays: bool
+    handles: str
+    not_fetched: str
+    fetched_already: str
+    no_room: str
+
+
+ITEMS = Errand(
+    fetch=CollectItem.name,
+    bring=HandOverItem.name,
+    of=lambda leaf: leaf.item,
+    stays=True,
+    handles="carry",
+    not_fetched="'{leaf}' hands over '{what}', which may not have been collected by then: put a "
+    "collect_item of it before it in a THEN",
+    fetched_already="'{leaf}' collects '{what}', which may be in a basket by then: put a "
+    "hand_over_item of it in between",
+    no_room="'{leaf}' collects '{what}' while robots carry {held}: there is room for {room} things "
+    "in all baskets",
+)
+PEOPLE = Errand(
+    fetch=MeetPerson.name,
+    bring=Escort.name,
+    of=lambda leaf: leaf.person,
+    stays=False,
+    handles="escort",
+    not_fetched="'{leaf}' escorts '{what}', who may not have been met by then: put a meet_person "
+    "with them before it in a THEN",
+    fetched_already="'{leaf}' meets '{what}', whom a robot may lead by then: put an escort of them "
+    "in between",
+    no_room="'{leaf}' meets '{what}' while {held} may still be led: put their escort before it",
+)
+
+
 def check_items(nodes: Nodes, robots: int) -> list[SceneProblem]:
     """Leaves that hand over what was not collected, or collect what cannot be had or put in.
 
-    Leaves without a tree have no order, and are not checked.
+    The same of people, who are met and led one at a time. Leaves without a tree have no order, and
+    are not checked.
     """
     if not nodes or (isinstance(nodes[0], BehaviorNode) and len(nodes) > 1):
         return []
-    if not any(isinstance(each, BehaviorNode) and each.item for each in nodes):
+    return [*_check(nodes, ITEMS, MOST_ITEMS * robots), *_check(nodes, PEOPLE, 1)]
+
+
+def _check(nodes: Nodes, errand: Errand, room: int) -> list[SceneProblem]:
+    if not any(isinstance(each, BehaviorNode) and errand.of(each) for each in nodes):
         return []
-    return [*_without_order(nodes), *_Order(nodes, robots).problems()]
+    return [*_without_order(nodes, errand), *_Order(nodes, errand, room).problems()]
 
 
-def _without_order(nodes: Nodes) -> Iterator[SceneProblem]:
-    """Items that several children of one AND handle: in which order is open."""
+def _without_order(nodes: Nodes, errand: Errand) -> Iterator[SceneProblem]:
+    """What several children of one AND handle: in which order is open."""
     told: set[str] = set()
     handled: list[dict[str, str]] = [{} for _ in nodes]
     for index in range(len(nodes) - 1, -1, -1):
         node = nodes[index]
-        if isinstance(node, BehaviorNode) and node.item is not None:
-            handled[index][node.item] = node.place or ""
+        if isinstance(node, BehaviorNode) and (what := errand.of(node)) is not None:
+            handled[index][what] = node.place or ""
         if node.parent is None:
             continue
         above = handled[node.parent]
         twice = handled[index].keys() & above.keys() if nodes[node.parent].kind == "and" else ()
-        for item in sorted(set(twice) - told):
-            told.add(item)
+        for what in sorted(set(twice) - told):
+            told.add(what)
             yield _problem(
-                handled[index][item],
-                f"several children of the AND '{nodes[node.parent].name}' carry '{item}', in any "
-                "order: put them into one THEN",
+                handled[index][what],
+                f"several children of the AND '{nodes[node.parent].name}' {errand.handles} "
+                f"'{what}', in any order: put them into one THEN",
             )
         above.update(handled[index])
 
@@ -92,9 +145,9 @@ class _Frame:
 class _Order:
     """Goes through a tree in its order, with where each item may be then."""
 
-    def __init__(self, nodes: Nodes, robots: int) -> None:
-        self._nodes = nodes
-        self._room = MOST_ITEMS * robots
+    def __init__(self, nodes: Nodes, errand: Errand, room: int) -> None:
+        self._nodes, self._errand = nodes, errand
+        self._room = room
         self._problems: dict[str, SceneProblem] = {}
         """By their sentences: each is told once."""
 
@@ -115,48 +168,38 @@ class _Order:
         return list(self._problems.values())
 
     def _leaf(self, node: BehaviorNode, before: Whereabouts) -> Whereabouts:
-        item, place = node.item, node.place
-        if item is None or place is None:
+        errand, what, place = self._errand, self._errand.of(node), node.place
+        if what is None or place is None:
             return before
-        at = before.get(item, frozenset({_ANYWHERE}))
-        match node.behavior:
-            case CollectItem.name:
-                self._collect(node, item, place, at, before)
-                return {**before, item: frozenset({_IN_BASKET})}
-            case HandOverItem.name:
-                if at != {_IN_BASKET}:
-                    self._tell(
-                        place,
-                        f"'{node.name}' hands over '{item}', which may not have been collected by "
-                        f"then: put a {CollectItem.name} of it before it in a THEN",
-                    )
-                    # One mistake is told once, and not what follows from it.
-                    return {**before, item: frozenset({_ANYWHERE})}
-                return {**before, item: frozenset({place})}
-            case _:
-                return before
+        at = before.get(what, frozenset({_ANYWHERE}))
+        if node.behavior == errand.fetch:
+            self._fetch(node, what, place, at, before)
+            return {**before, what: frozenset({_IN_BASKET})}
+        if node.behavior != errand.bring:
+            return before
+        if at != {_IN_BASKET}:
+            self._tell(place, errand.not_fetched.format(leaf=node.name, what=what))
+            # One mistake is told once, and not what follows from it.
+            return {**before, what: frozenset({_ANYWHERE})}
+        return {**before, what: frozenset({place})}
 
-    def _collect(
-        self, node: BehaviorNode, item: str, place: str, at: frozenset[str], before: Whereabouts
+    def _fetch(
+        self, node: BehaviorNode, what: str, place: str, at: frozenset[str], before: Whereabouts
     ) -> None:
+        errand, leaf = self._errand, node.name
         if _IN_BASKET in at:
+            self._tell(place, errand.fetched_already.format(leaf=leaf, what=what))
+        elif errand.stays and (others := sorted(at - {_ANYWHERE, place})):
             self._tell(
                 place,
-                f"'{node.name}' collects '{item}', which may be in a basket by then: put a "
-                f"{HandOverItem.name} of it in between",
-            )
-        elif others := sorted(at - {_ANYWHERE, place}):
-            self._tell(
-                place,
-                f"'{node.name}' collects '{item}' at '{place}', but by then it may be at "
+                f"'{leaf}' collects '{what}' at '{place}', but by then it may be at "
                 f"{list_names(others)}",
             )
-        held = [name for name, where in before.items() if where == {_IN_BASKET} and name != item]
+        held = [name for name, where in before.items() if where == {_IN_BASKET} and name != what]
         if len(held) >= self._room:
+            told = list_names(held)
             self._tell(
-                place,
-                f"'{node.name}' collects '{item}' while robots carry {list_names(held)}: there is "
-                f"room for {self._room} things in all baskets",
+                place, errand.no_room.format(leaf=leaf, what=what, held=told, room=self._room)
             )
 
     def _tell(self, place: str, message: str) -> None:

@@ -37,7 +37,7 @@ def scene_of(building: Building, name: str, robots: int) -> Scene:
     ]
     places: dict[str, Place] = {}
     for full in named:
-        if (pose := _where_to_stand(building, full)) is not None:
+        if (pose := where_to_stand(building, full)) is not None:
             places[_unlike(scene_name(full), places)] = Place(pose=pose)
     begins = _begins(building, robots)
     return Scene(
@@ -90,7 +90,7 @@ def _far(a: Base, b: Base) -> bool:
     return a.z != b.z or math.hypot(a.x - b.x, a.y - b.y) >= APART_M
 
 
-def _where_to_stand(building: Building, full: str) -> Pose | None:
+def where_to_stand(building: Building, full: str) -> Pose | None:
     """A place, or where one waits for the elevator that stops there; None without room for it."""
     pose, (floor, name) = _pose(building, full), full.split("/", 1)
     if not any(each.stops.get(floor) == name for each in building.document.elevators.values()):

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from mend.documents.strict_model import StrictModel
 from mend.maps.building.building import Building, DoorOpening
-from mend.maps.building.clearance import distances_m
 from mend.sim.building.building_robot import PERIOD_S, BuildingRobot
 from mend.sim.building.bystander import RADIUS_M
-from mend.sim.building.door import WorldDoor
+from mend.sim.building.door import WorldDoor, open_doors
 from mend.sim.building.draws import read_draws, written_draws
 from mend.sim.building.floor_pose import FloorPose
+from mend.sim.building.social_force import KEEP_M, ahead, free_step, pushed
 from mend.sim.building.walkways import Point, Walkways
 
 Matrix = NDArray[np.float64]
@@ -24,17 +24,6 @@ _SITS_S = (10.0, 60.0)
 _ARRIVED_M = 0.35
 _STUCK_S = 4.0
 """Who needs so much longer than twice the way to the next point goes back."""
-_OPENS_DOOR_M = 1.0
-_HOLDS_DOOR_S = 10.0
-# The social force model of Helbing and Molnar: relaxation, strength and reach of repulsion.
-_RELAX_S = 0.5
-_PUSH_M_S2 = 2.0
-_PUSH_REACH_M = 0.3
-_KEEP_M = 0.05
-_KEEP_FROM_ROBOTS_M = 0.25
-_ROBOT_AHEAD_S = 1.0
-"""Nobody steps to where a robot is going to be so soon."""
-_TURNS_RAD = (0.0, -0.4, 0.4, -0.8, 0.8, -1.2, 1.2, -1.6, 1.6)
 
 
 class WalkerSnapshot(StrictModel):
@@ -117,12 +106,12 @@ class Walkers:
             if not each.way and not self._sets_out(each, time_s):
                 continue
             floor = each.at.floor
-            if self._opens_doors(each, time_s) or floor not in walls:
+            if open_doors(self._doors, each.at, time_s) or floor not in walls:
                 walls[floor] = segments(floor)
             circles = [*standing, *(e.at for e in self.people if e is not each)]
             around = [
-                *((at.x, at.y, RADIUS_M + _KEEP_M) for at in circles if at.floor == floor),
-                *(c for robot in robots if robot.at.floor == floor for c in _ahead(robot)),
+                *((at.x, at.y, RADIUS_M + KEEP_M) for at in circles if at.floor == floor),
+                *(c for robot in robots if robot.at.floor == floor for c in ahead(robot)),
             ]
             self._step(each, time_s, np.array(around, np.float64).reshape(-1, 3), walls[floor])
 
@@ -144,19 +133,6 @@ class Walkers:
         who.room, who.way, who.came_on_s = room, way, time_s
         return True
 
-    def _opens_doors(self, who: Walker, time_s: float) -> bool:
-        opened = False
-        for door in self._doors:
-            if (
-                door.is_shut
-                and door.name.startswith(f"{who.at.floor}/")
-                and door.may_be_passed(time_s)
-                and door.distance_m(who.at.x, who.at.y) < _OPENS_DOOR_M
-            ):
-                door.hold_open(time_s + _HOLDS_DOOR_S)
-                opened = True
-        return opened
-
     def _step(self, who: Walker, time_s: float, around: Matrix, walls: Matrix) -> None:
         here = np.array([who.at.x, who.at.y])
         goal = np.array(who.way[0])
@@ -168,8 +144,8 @@ class Walkers:
                 who.until_s = time_s + float(self._rng.uniform(*_SITS_S))
             who.came_on_s = time_s
             return
-        wanted = _pushed(np.array(who.velocity), here, goal, who.speed_m_s, around)
-        to = _free_step(here, wanted, around, walls)
+        wanted = pushed(np.array(who.velocity), here, goal, who.speed_m_s, around)
+        to = free_step(here, wanted, around, walls)
         if to is None:
             who.velocity = (0.0, 0.0)
         else:
@@ -224,54 +200,3 @@ def _turn_back(who: Walker, time_s: float) -> None:
     who.room, who.left = who.left, who.room
     who.way, who.passed = who.passed[::-1], who.way[::-1]
     who.came_on_s = time_s
-
-
-def _ahead(robot: BuildingRobot) -> list[tuple[float, float, float]]:
-    """A robot as people avoid it: where it is, and where it is about to be."""
-    at, now = robot.at, robot.velocity()
-    cos, sin = math.cos(at.yaw), math.sin(at.yaw)
-    vx = now.forward_m_s * cos - now.left_m_s * sin
-    vy = now.forward_m_s * sin + now.left_m_s * cos
-    radius_m = robot.radius_m + _KEEP_FROM_ROBOTS_M
-    times = (0.0, 0.33, 0.67, 1.0) if vx or vy else (0.0,)
-    soon = [_ROBOT_AHEAD_S * each for each in times]
-    return [(at.x + vx * each, at.y + vy * each, radius_m) for each in soon]
-
-
-def _pushed(
-    velocity: Matrix, here: Matrix, goal: Matrix, speed_m_s: float, around: Matrix
-) -> Matrix:
-    """The velocity after one cycle: drawn to the goal, pushed off what is round."""
-    to_goal = goal - here
-    force = (speed_m_s * to_goal / np.hypot(*to_goal) - velocity) / _RELAX_S
-    if len(around):
-        off = here - around[:, :2]
-        away_m = np.maximum(np.hypot(off[:, 0], off[:, 1]), 1e-6)
-        push = _PUSH_M_S2 * np.exp((around[:, 2] + RADIUS_M - away_m) / _PUSH_REACH_M)
-        force = force + (np.minimum(push, 4.0)[:, None] * off / away_m[:, None]).sum(axis=0)
-    changed = velocity + force * PERIOD_S
-    fast = float(np.hypot(*changed))
-    return np.asarray(changed * min(1.0, speed_m_s / max(fast, 1e-9)))
-
-
-def _free_step(here: Matrix, velocity: Matrix, around: Matrix, walls: Matrix) -> Matrix | None:
-    """Where one cycle leads without touching anything, a little aside if need be; None: nowhere.
-
-    Who is too near to something already may only get farther from it.
-    """
-    turns = np.array(_TURNS_RAD)
-    cos, sin = np.cos(turns), np.sin(turns)
-    steps = PERIOD_S * np.stack(
-        [velocity[0] * cos - velocity[1] * sin, velocity[0] * sin + velocity[1] * cos], axis=1
-    )
-    to = here + steps
-    free = np.ones(len(to), dtype=bool)
-    if len(around):
-        need = around[:, 2] + RADIUS_M
-        now = np.hypot(*(here - around[:, :2]).T)
-        then = np.hypot(*np.moveaxis(to[:, None] - around[None, :, :2], 2, 0))
-        free &= (then >= np.minimum(need, now)).all(axis=1)
-    near_m, now_m = distances_m(to, walls), float(distances_m(here[None], walls)[0])
-    free &= near_m >= min(RADIUS_M + _KEEP_M, now_m)
-    found = np.flatnonzero(free)
-    return np.asarray(to[found[0]]) if len(found) else None

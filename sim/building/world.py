@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from mend.documents.strict_model import StrictModel
 from mend.maps.building.building import Building, DoorOpening
-from mend.maps.building.clearance import distances_m
+from mend.maps.building.clearance import clearance_m, distances_m
+from mend.maps.building.crossing import crossed_by
 from mend.robots.base.battery import LOW
 from mend.robots.base.body import RangeScan
 from mend.sim.building import laser
@@ -27,13 +28,17 @@ from mend.sim.building.draws import read_draws, written_draws
 from mend.sim.building.elevator_bank import CabinSnapshot, ElevatorBank
 from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.furniture import Furniture, Row
+from mend.sim.building.gatherings import gatherings
 from mend.sim.building.goods import Goods, ItemSnapshot, WishSnapshot
+from mend.sim.building.guests import Guest, Guests, GuestSnapshot, Surroundings
 from mend.sim.building.laser_noise import measured_m
 from mend.sim.building.odometry import Odometer, OdometerSnapshot
 from mend.sim.building.options import BuildingOptions
 from mend.sim.building.robot_basket import BasketSnapshot, RobotBasket
 from mend.sim.building.robot_battery import BatterySnapshot, RobotBattery
-from mend.sim.building.walkers import Walkers, WalkerSnapshot
+from mend.sim.building.robot_companion import RobotCompanion
+from mend.sim.building.social_force import KEEP_M
+from mend.sim.building.walkers import Walker, Walkers, WalkerSnapshot
 from mend.tasks.frames import Frame
 from mend.tasks.intervention import Act, Intervention
 
@@ -51,6 +56,11 @@ _BEFORE_PERSON_M = 1.5
 """Who is at a place reaches the basket of a robot that stands so near to it."""
 _AT_HAND_M = 10.0
 """People go so far for what is in the basket of a robot that does not get on."""
+_ASKED_M = 2.5
+"""Who stands so near to a robot that stands is meant by what it asks."""
+_BESIDE_M, _DIRECTIONS = (1.0, 1.3, 1.6), 16
+_OFF_LANES_M = 0.8
+"""So far from a place, and from lanes where there is room, stands who waits for a robot."""
 _HELD_OPEN_S = 30.0
 """What people opened for a robot falls shut after so long, once nobody is there."""
 
@@ -73,6 +83,9 @@ class WorldSnapshot(StrictModel):
     batteries: list[BatterySnapshot] = []
     walkers: list[WalkerSnapshot] = []
     walkers_draws: str | None = None
+    guests: dict[int, GuestSnapshot] = {}
+    guests_draws: str | None = None
+    companions: list[str] = []
     furniture: dict[str, list[Row]]
     furniture_moves_s: float
     carries_s: float | None
@@ -108,6 +121,10 @@ class BuildingWorld:
         self.touches = self.carried = 0
         self._time_s = 0.0
         self.bystanders: list[Bystander] = []
+        starts = list(starts)
+        stand = [at for _, at in starts]
+        if options.blocked_hallways:
+            self.bystanders = gatherings(building, options.blocked_hallways, goods.seed, stand)
         self.doors = WorldDoors(
             building,
             lambda door: (
@@ -128,6 +145,19 @@ class BuildingWorld:
         self.walkers = Walkers(building, options.people, self.doors.values(), goods.seed)
         self.walkers.leave_room_for((each.at for each in self.robots), RADIUS_M)
         self.baskets = [RobotBasket(goods, each, goods.seed) for each in range(len(self.robots))]
+        self.guests = Guests(options.no_shows, options.dawdling, places, goods.seed)
+        self._around = Surroundings(
+            segments=self._segments,
+            people=self._people,
+            robots=self.robots,
+            room_beside=self._room_beside,
+            stop_around=self.elevators.stop_around,
+            doors=[e for e in self.doors.values() if e.plan.opens is DoorOpening.PEOPLE],
+        )
+        self.companions = [
+            RobotCompanion(self.guests, each, number, goods.seed, self._sees)
+            for number, each in enumerate(self.robots)
+        ]
 
     def _robot(
         self,
@@ -148,15 +178,16 @@ class BuildingWorld:
     def advance_cycle(self) -> None:
         self._time_s += PERIOD_S
         self.doors.let_pass(self._time_s, self._circles)
-        self.walkers.walk(
-            self._time_s, self.robots, [each.at for each in self.bystanders], self._segments
-        )
+        standing = [each.at for each in self.bystanders]
+        standing += [each.at for each in self.guests.there.values()]
+        self.walkers.walk(self._time_s, self.robots, standing, self._segments)
+        self.guests.walk(self._time_s, self.robots, self._around)
         self._move_furniture()
         if self._carrying.is_due(self._time_s):
             self._carry_one()
         for robot, battery in zip(self.robots, self.batteries, strict=True):
             self._use_battery(robot, battery)
-        self.elevators.pass_time(self._time_s, self.robots, self._circles)
+        self.elevators.pass_time(self._time_s, self.robots, self.guests.there, self._circles)
         for robot in self.robots:
             self._scan(robot)
 
@@ -211,12 +242,43 @@ class BuildingWorld:
             *((each, each.at, each.radius_m) for each in self.robots),
             *((each, each.at, PERSON_RADIUS_M) for each in self.bystanders),
             *((each, each.at, PERSON_RADIUS_M) for each in self.walkers.people),
+            *((each, each.at, PERSON_RADIUS_M) for each in self.guests.there.values()),
         ]
         return [
             (at.x, at.y, radius)
             for each, at, radius in there
             if each is not but and at.floor == floor
         ]
+
+    def _people(self, floor: str, but: Guest) -> list[FloorPose]:
+        """Where people are on a floor."""
+        people: list[Bystander | Walker | Guest] = [*self.bystanders, *self.walkers.people]
+        people += self.guests.there.values()
+        return [each.at for each in people if each is not but and each.at.floor == floor]
+
+    def _room_beside(self, place: FloorPose) -> FloorPose | None:
+        """Where somebody may stand who is at a place, off the lanes if there is room."""
+        walls, lanes = self._segments(place.floor), self._lanes(place.floor)
+        free = []
+        for away_m in _BESIDE_M:
+            for turn in np.arange(_DIRECTIONS) * math.tau / _DIRECTIONS:
+                x, y = place.x + away_m * math.cos(turn), place.y + away_m * math.sin(turn)
+                at = FloorPose(place.floor, x, y)
+                seen = clearance_m((place.x, place.y), (x, y), walls) > 2.0 * KEEP_M
+                in_cabin = self.elevators.is_in_a_cabin(place.floor, x, y, PERSON_RADIUS_M)
+                if seen and not in_cabin and not self._touches(at, PERSON_RADIUS_M + KEEP_M):
+                    free.append(at)
+        points = np.array([(at.x, at.y) for at in free]).reshape(-1, 2)
+        off_m = np.minimum(distances_m(points, lanes), _OFF_LANES_M)
+        return free[int(np.argmax(off_m))] if free else None
+
+    def _lanes(self, floor: str) -> NDArray[np.float64]:
+        places, lanes = self.building.floors[floor].places, self.building.floors[floor].lanes
+        ends = [(places[a], places[b]) for a, b in (each.between for each in lanes)]
+        return np.array([(a.x, a.y, b.x, b.y) for a, b in ends], np.float64).reshape(-1, 4)
+
+    def _sees(self, a: FloorPose, b: FloorPose) -> bool:
+        return not len(crossed_by(np.array([a.x, a.y, b.x, b.y]), self._segments(a.floor)))
 
     def _segments(self, floor: str) -> NDArray[np.float64]:
         """Walls, shut doors, cabins and furniture."""
@@ -280,6 +342,8 @@ class BuildingWorld:
             case Act.BAR | Act.CLEAR as act:
                 assert intervention.between is not None, "checked before"
                 return self._bar_or_clear(act, intervention.between)
+            case Act.SEND_PERSON:
+                return self._send_people()
             case Act.STEAL:
                 return self.goods.steal(intervention.object)
             case act:
@@ -302,6 +366,22 @@ class BuildingWorld:
             distances_m(np.array([[x, y]]), segments)[0] < radius_m
             for x, y, radius_m in self._circles(floor)
         )
+
+    def _send_people(self) -> str:
+        """Somebody tells those to come for whom robots stand and wait."""
+        waiting = [
+            number
+            for number in self.guests.of_robots
+            if not self.robots[number].moving
+            and self.robots[number].at.floor in self.building.floors
+        ]
+        told = [
+            self.guests.send(each, self._time_s, self.robots[each].at, self._around)
+            for each in waiting
+        ]
+        if not told:
+            return "no robot that stands waits for anybody"
+        return next((each for each in told if each), "")
 
     def _stands_at(self, number: int, place: str | None) -> bool:
         """Whether a robot really stands, and before who is at a place, where one is named."""
@@ -346,12 +426,23 @@ class BuildingWorld:
         return ""
 
     def _make_way(self) -> str:
-        stepped_aside = bool(self.bystanders)
-        self.bystanders.clear()
+        asked = [each for each in self.bystanders if self._is_asked(each)]
+        stepped_aside = asked or self.bystanders
+        self.bystanders = [each for each in self.bystanders if each not in stepped_aside]
         opened = self._open_for_who_waits()
         pressed = self._press_for_who_waits()
-        done = stepped_aside or opened or pressed
+        done = bool(stepped_aside) or opened or pressed
         return "" if done else "nothing is in the way of any robot"
+
+    def _is_asked(self, bystander: Bystander) -> bool:
+        """Whether a robot stands before them; where none does, everybody is meant."""
+        at = bystander.at
+        return any(
+            robot.at.floor == at.floor
+            and not robot.moving
+            and math.hypot(robot.at.x - at.x, robot.at.y - at.y) < _ASKED_M
+            for robot in self.robots
+        )
 
     def _press_for_who_waits(self) -> bool:
         """Somebody calls the elevator that a robot needs, and presses a button in it."""
@@ -402,6 +493,9 @@ class BuildingWorld:
             batteries=[each.snapshot() for each in self.batteries],
             walkers=self.walkers.snapshot(),
             walkers_draws=self.walkers.draws(),
+            guests=self.guests.snapshot(),
+            guests_draws=self.guests.draws(),
+            companions=[each.snapshot() for each in self.companions],
             furniture=self._furniture.rows(),
             furniture_moves_s=self._furniture_moves_s,
             carries_s=self._carrying.due_s,
@@ -427,6 +521,10 @@ class BuildingWorld:
                 battery.restore(held)
         if kept.walkers_draws is not None:
             self.walkers.restore(kept.walkers, kept.walkers_draws)
+        if kept.guests_draws is not None:
+            self.guests.restore(kept.guests, kept.guests_draws)
+            for companion, draws in zip(self.companions, kept.companions, strict=True):
+                companion.restore(draws)
         self._furniture.restore(kept.furniture)
         self._furniture_moves_s = kept.furniture_moves_s
         self._carrying.due_s = kept.carries_s

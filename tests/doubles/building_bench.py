@@ -39,6 +39,9 @@ class BuildingBench:
         forgetful: float = 0.0,
         battery_wh: float = 0.0,
         people: int = 0,
+        blocked_hallways: float = 0.0,
+        no_shows: float = 0.0,
+        dawdling: float = 0.0,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
         setup = WorldSetup(
@@ -55,6 +58,9 @@ class BuildingBench:
                 "forgetful": forgetful,
                 "battery_wh": battery_wh,
                 "people": people,
+                "blocked_hallways": blocked_hallways,
+                "no_shows": no_shows,
+                "dawdling": dawdling,
             },
         )
         self.group: SharedWorld = BUILDINGS.create_agents(setup)
@@ -72,7 +78,7 @@ class BuildingBench:
         agent = next(each for each in self.group.agents if each.name == robot)
         agent.handle(f"c{self._sent}", body)
 
-    def go(self, robot: str, place: str, behavior: str = "go_to", **more: str) -> None:
+    def go(self, robot: str, place: str, behavior: str = "go_to", **more: str | float) -> None:
         """Start a behavior at a place; `more` are its other parameters."""
         pose = self.scene.places[place].pose
         x, y = frames_of(self.scene)[robot].to_robot(pose.x, pose.y)

@@ -15,6 +15,7 @@ from mend.fleet.requests import DeliverMessage, GoToRoom, Transport
 from mend.maps.building.building import Building
 from mend.maps.building.random_building import random_building
 from mend.server.composition import Service
+from mend.server.fleets.operator_requests import WayFound
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.runtime.requests import RunRequest
 from mend.server.sites.requests import SiteRequest
@@ -255,6 +256,30 @@ async def requests(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def fleet(service: Service, open_page: OpenPage) -> Page:
+    """One robot is under way, one out of service, and a way is closed."""
+    site = await open_office_with_fleet(service, robots=2, floors=2)
+    at_work = await service.fleets.fleet(site)
+    _, second = at_work.dispatcher.fleet.robots
+    await at_work.take_out(second, "its wheel squeaks", None)
+    lane = at_work.dispatcher.building.floors["F1"].lanes[0]
+    between = [f"F1/{each}" for each in lane.between]
+    await at_work.found(WayFound(finding="blocked", between=between), None)
+    wanted = [
+        Transport(name="parcel", what="the blue parcel", origin="F1/101", destination="F1/106"),
+        DeliverMessage(name="lunch", place="F1/103", message="Lunch.", earliest_s=600.0),
+    ]
+    for each in wanted:
+        await service.fleets.submit(site, each, None)
+    page = await open_page("/fleet")
+    robots = page.get_by_role("list", name="Robots of the fleet")
+    await expect(robots.get_by_text("collects parcel at")).to_be_visible(timeout=PATIENCE_MS)
+    await expect(robots.get_by_text("Out of service", exact=False).first).to_be_visible()
+    await expect(page.get_by_role("list", name="Ways that are closed now")).to_be_visible()
+    await expect(page.locator(".plan-robot").first).to_be_visible(timeout=PATIENCE_MS)
+    return page
+
+
 async def sign_in(_: Service, open_page: OpenPage) -> Page:
     page = await open_page("/")
     await page.context.clear_cookies()
@@ -270,7 +295,7 @@ Situation = Callable[[Service, OpenPage], Awaitable[Page]]
 
 async def touch_screen(service: Service, open_page: OpenPage) -> Page:
     """The start of a robot's touch screen, after words that it has not understood."""
-    site = await open_office_with_fleet(service, floors=2)
+    site = await open_office_with_fleet(service, floors=8)
     robot = next(iter((await service.fleets.fleet(site)).dispatcher.fleet.robots))
     page = await open_page(f"/robots/{robot}/ask")
     await page.get_by_label("Say it in words").fill("go to the moon", timeout=PATIENCE_MS)
@@ -291,7 +316,7 @@ async def touch_place(service: Service, open_page: OpenPage) -> Page:
 async def touch_refused(service: Service, open_page: OpenPage) -> Page:
     """Something is wanted there too soon, and offered for later."""
     page = await touch_screen(service, open_page)
-    await page.get_by_label("Say it in words").fill("come to F2 206 within 1 minute")
+    await page.get_by_label("Say it in words").fill("come to F8 806 within 1 minute")
     await page.get_by_role("button", name="Say it").click()
     await page.get_by_role("button", name="Yes, that is right").click()
     await expect(page.get_by_role("button", name="instead")).to_be_visible(timeout=PATIENCE_MS)
@@ -331,6 +356,7 @@ SITUATIONS: dict[str, Situation] = {
         touch_screen,
         touch_place,
         touch_refused,
+        fleet,
         settings,
         unknown,
         sign_in,

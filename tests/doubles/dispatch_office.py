@@ -27,7 +27,9 @@ def fleet_of(*starts: str, **fields: Any) -> FleetSetting:
         for number, start in enumerate(starts)
     )
     policy = fields.pop("policy", Policy())
-    return FleetSetting(robots=robots, speed_m_s=1.0, handling_s=5.0, policy=policy, **fields)
+    return FleetSetting(
+        robots=robots, speed_m_s=1.0, starts_s=0.0, handling_s=5.0, policy=policy, **fields
+    )
 
 
 def dispatcher_for(*starts: str, **fields: Any) -> Dispatcher:

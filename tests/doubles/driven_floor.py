@@ -115,13 +115,14 @@ class Drive:
         way: list[tuple[float, float]],
         goal_yaw: float = 0.0,
         noise: np.random.Generator | None = None,
+        speed: float = 1.0,
     ) -> None:
         self.floor, self.limits, self.radius_m = floor, limits, radius_m
         self.at, self.now, self.time_s = start, STANDING, 0.0
         self.goal = BasePose(*way[-1], goal_yaw)
         self.nearest_m = math.inf
         self.told: list[Velocity] = []
-        self._noise = noise
+        self._noise, self._speed = noise, speed
         self._follower = WayFollower(
             limits, radius_m, PERIOD_S, [(start.x, start.y), *way], self.goal
         )
@@ -136,7 +137,7 @@ class Drive:
 
     def choose(self, scan: RangeScan) -> Velocity:
         seen = self._surroundings.take(scan, self.at, self.time_s)
-        return self._follower.choose(self.at, self.now, seen, 1.0)
+        return self._follower.choose(self.at, self.now, seen, self._speed)
 
     def step(self) -> str | None:
         """One cycle; how it ended, if it did."""

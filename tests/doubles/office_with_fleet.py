@@ -16,8 +16,13 @@ async def open_office_with_fleet(
     *,
     robots: int = 1,
     floors: int = 1,
+    answers: Literal["live", "yes"] = "yes",
+    **more: float,
 ) -> UUID:
-    """Open a site there; its robots know where they are, and no door is shut."""
+    """Open a site there; its robots know where they are, and no door is shut.
+
+    `more` are further options of the world.
+    """
     scene = scene_of(Building(random_building(7, floors, 6)), "office", robots)
     await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
     site = await service.sites.open_site(
@@ -26,8 +31,8 @@ async def open_office_with_fleet(
             world="building",
             speed=speed,
             seed=3,
-            world_options={"localizer": "exact", "unmapped": 0.0, "shut_doors": 0.0},
-            fleet=FleetOptions(answers="yes"),
+            world_options={"localizer": "exact", "unmapped": 0.0, "shut_doors": 0.0, **more},
+            fleet=FleetOptions(answers=answers),
         )
     )
     return site.id

@@ -1,6 +1,7 @@
 """People of a building ask for things, and robots of a site do them, leg by leg."""
 
 import asyncio
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -22,6 +23,9 @@ from mend.server.fleets.asking import WordsAsked
 from mend.server.journal import events as ev
 from mend.server.journal.stored_event import read_event
 from mend.server.journal.subscriptions import Record
+from mend.server.report.fleet_history import FleetHistory
+from mend.server.report.leg_times import TimeUse, time_split
+from mend.server.report.span import Span
 from mend.server.settings import Settings
 from mend.server.sites.requests import FleetOptions, SiteRequest
 
@@ -97,10 +101,16 @@ async def test_a_service_that_stopped_goes_on_with_what_its_robots_were_doing(
         def drives(events: list[ev.Event]) -> bool:
             return sum(isinstance(each, ev.StepStarted) for each in events) > 0
 
-        await events_until(service, drives)
+        before = await events_until(service, drives)
     async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
         done = await until_over(service, {"room4", "room6"})
         runs = await service.journal.index.counts()
+        events = [read_event(each.seq, each.text) for each in await records_of(service)]
+    begun = {(each.robot, each.number) for each in before if isinstance(each, ev.LegBegun)}
+    ended = [each for each in events if isinstance(each, ev.LegEnded)]
+    # What was driven before the world began anew is known by nobody.
+    known = {(each.robot, each.number): each.driven_m for each in ended}
+    assert {known[leg] for leg in begun} == {None}
     assert done == {name: ["booked", "under_way", "done"] for name in done}
     assert runs == {"finished": 2}
 
@@ -122,6 +132,16 @@ async def test_things_are_brought_and_messages_told_over_two_floors(tmp_path: Pa
     assert any('"Lunch is ready."' in each for each in said)
     deeds = [each.act for each in events if isinstance(each, ev.InterventionDone)]
     assert deeds.count("put_in") == deeds.count("take_out") == 1
+    history = FleetHistory.of(site, events, Span())
+    assert all((ended.driven_m or 0.0) > 1.0 for _, ended in history.ended)
+    by_leg = {leg.begun.action: time_split(leg) for leg, _ in history.ended}
+    assert by_leg.keys() == {"collect", "hand_over", "deliver_message"}
+    assert all(split[TimeUse.NAVIGATION] > 0.0 for split in by_leg.values())
+    assert by_leg["collect"][TimeUse.START] > 0.0
+    assert by_leg["hand_over"][TimeUse.END] > 0.0
+    assert by_leg["deliver_message"][TimeUse.END] > 0.0
+    assert sum(split[TimeUse.ELEVATOR] for split in by_leg.values()) > 0.0
+    assert all(split[TimeUse.UNKNOWN] == 0.0 for split in by_leg.values())
 
 
 @pytest.mark.slow(10)
@@ -183,6 +203,38 @@ async def test_requests_are_made_followed_changed_and_cancelled_over_rest(tmp_pa
         deeds = [each.what for each in (await client.deeds()).deeds]
     assert "asked for 'later'" in deeds
     assert "no longer wanted 'later'" in deeds
+
+
+@pytest.mark.slow(10)
+async def test_a_robot_is_sent_over_rest_and_is_where_it_was_sent(tmp_path: Path) -> None:
+    async with (
+        open_service(settings(tmp_path)) as service,
+        MendClient(service.url) as client,
+        asyncio.timeout(PATIENCE_S),
+    ):
+        site = await open_office_with_fleet(service, "max")
+        (known,) = (await client.fleet(site)).robots
+        with pytest.raises(RefusedError, match="no place 'F1/999'"):
+            await client.send_robot(site, known.robot, "F1/999")
+        while not (await client.fleet(site)).robots[0].connected:  # noqa: ASYNC110 - as it is
+            await asyncio.sleep(0.05)
+        await client.send_robot(site, known.robot, "F1/103")
+        with pytest.raises(RefusedError, match="is on its way to F1/103: wait"):
+            await client.close_site(site)
+
+        def came(events: list[ev.Event]) -> bool:
+            return any(isinstance(each, ev.ErrandEnded) for each in events)
+
+        *_, ended = [e for e in await events_until(service, came) if isinstance(e, ev.ErrandEnded)]
+        assert (ended.came, ended.at, ended.reason) == (True, "F1/103", None)
+        (there,) = (await client.fleet(site)).robots
+        assert there.at_work is None
+        assert there.pose is not None
+        place = (await service.fleets.fleet(site)).dispatcher.building.floors["F1"].places["103"]
+        assert math.hypot(there.pose.x - place.x, there.pose.y - place.y) < 0.5
+        await client.close_site(site)
+        deeds = [each.what for each in (await client.deeds()).deeds]
+    assert f"sent {known.robot} to F1/103" in deeds
 
 
 async def test_a_site_without_a_fleet_takes_no_requests(tmp_path: Path) -> None:

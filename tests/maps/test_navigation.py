@@ -72,3 +72,17 @@ def test_times_equal_those_of_floyd_and_warshall(edges: list[tuple[int, int, int
         plain = np.minimum(plain, plain[:, via : via + 1] + plain[via : via + 1, :])
     assert np.allclose(time_s, plain, atol=1e-6)
     assert np.allclose(distance_m, plain, atol=1e-6)
+
+
+def test_of_an_elevator_all_rides_are_closed_together() -> None:
+    floors = [Place(f"{n}/lift", 0.0, 0.0, n) for n in range(3)]
+    others = [Place("0/hall", 3.0, 0.0), Place("0/other", 6.0, 0.0), Place("1/other", 6.0, 0.0, 1)]
+    rides = [("0/lift", "1/lift"), ("0/lift", "2/lift"), ("1/lift", "2/lift")]
+    ways = [Way(a, b, WayKind.ELEVATOR, length_m=0.0) for a, b in rides]
+    ways += [Way("0/hall", "0/lift"), Way("0/hall", "0/other")]
+    ways += [Way("0/other", "1/other", WayKind.ELEVATOR, length_m=0.0)]
+    graph = NavigationGraph([*floors, *others], ways)
+    assert graph.together(("2/lift", "1/lift")) == {frozenset(each) for each in rides}
+    assert graph.together(("0/lift", "0/hall")) == {frozenset(("0/lift", "0/hall"))}
+    assert graph.together(("0/other", "1/other")) == {frozenset(("0/other", "1/other"))}
+    assert not graph.together(("0/lift", "0/other"))

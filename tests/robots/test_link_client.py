@@ -19,6 +19,7 @@ from mend.robots.link.messages import (
     AnyServiceMessage,
     Command,
     CommandBody,
+    Driven,
     Heartbeat,
     Hello,
     Hold,
@@ -309,6 +310,34 @@ async def test_a_service_that_is_not_there_yet_is_tried_again() -> None:
     await service.command("c1", Shutdown())
     await task
     outbox.close()
+
+
+# --- What is driven ---------------------------------------------------------------------------
+
+
+class DrivingAgent(CountingAgent):
+    """A counting robot that drives two metres a step."""
+
+    def driven(self) -> Driven:
+        return Driven(way_m=2.0 * self.time_s(), barred_s=0.0)
+
+
+async def test_a_robot_that_drives_says_how_far_it_had_when_something_happened() -> None:
+    robot = Robot(DrivingAgent())
+    assert (await robot.service.accept()).driven == Driven(way_m=0.0, barred_s=0.0)
+    await robot.service.command("c1", START)
+    reports = await acknowledge_until_finished(robot.service)
+    ways_m = [each.driven.way_m for each in reports if each.driven is not None]
+    assert ways_m == [2.0 * each.time for each in reports]
+    robot.task.cancel()
+    await asyncio.gather(robot.task, return_exceptions=True)
+    robot.outbox.close()
+
+
+async def test_a_robot_without_a_base_says_nothing_of_that(robot: Robot) -> None:
+    assert (await robot.service.accept()).driven is None
+    await robot.service.command("c1", START)
+    assert {each.driven for each in await acknowledge_until_finished(robot.service)} == {None}
 
 
 # --- Poses ------------------------------------------------------------------------------------

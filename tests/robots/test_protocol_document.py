@@ -21,6 +21,7 @@ def members(union: object) -> list[type[BaseModel]]:
 PARTS: dict[str, type[BaseModel]] = {
     "reach": m.ReachLimits,
     "executing": m.ActiveExecution,
+    "driven": m.Driven,
     "detection": m.Detection,
     "finished_result": m.FinishedResult,
     "sighting": m.Sighting,
@@ -32,6 +33,7 @@ PARTS: dict[str, type[BaseModel]] = {
     "shown_pose": m.ShownPose,
     "position": m.Position,
     "location": m.Location,
+    "closed_way": m.ClosedWay,
     "intervention": Intervention,
 }
 MODELS = PARTS | {

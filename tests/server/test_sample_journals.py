@@ -25,6 +25,8 @@ OF_NO_RUN = {
     "fleet_told",
     "leg_begun",
     "leg_ended",
+    "errand_begun",
+    "errand_ended",
     "plan_changed",
     "request_changed",
     "sign_in_failed",
@@ -47,11 +49,19 @@ ADDED_SINCE: dict[str, set[str]] = {
         "node_taken",
         "node_undone",
         "suspected_false_alarm",
+        "way_found",
     },
-    "v2": {*OF_NO_RUN, "node_taken", "first_look", "looked_anew", "suspected_false_alarm"},
-    "v3": {*OF_NO_RUN, "node_taken", "looked_anew"},
-    "v4": {*OF_NO_RUN, "node_taken", "looked_anew"},
-    "v5": {*OF_NO_RUN, "node_taken", "looked_anew"},
+    "v2": {
+        *OF_NO_RUN,
+        "node_taken",
+        "first_look",
+        "looked_anew",
+        "suspected_false_alarm",
+        "way_found",
+    },
+    "v3": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
+    "v4": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
+    "v5": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
 }
 """The types of events that came after a sample was written."""
 

@@ -7,6 +7,7 @@ from uuid import UUID
 
 import pytest
 
+from mend.dialogue.evidence import Change
 from mend.dialogue.script import CloseReason, Help
 from mend.server.access.roles import Role
 from mend.server.journal import events as ev
@@ -179,6 +180,7 @@ def test_every_act_has_words(act: Act) -> None:
         Act.CHARGE: "robot",
         Act.BAR: "between F1/hall and F1/101",
         Act.CLEAR: "between F1/hall and F1/101",
+        Act.SEND_PERSON: "to come",
     }
     object_name = None if act in without else "pink_bar"
     to = Pose(x=0.5, y=0.0) if act is Act.MOVE else None
@@ -209,6 +211,13 @@ def test_every_promise_is_looked_for_seen_or_not(help_: Help) -> None:
     verb = "feel" if felt else "see"
     assert sees.startswith(f"robot {verb}s ")
     assert misses == sees.replace(f"{verb}s", f"does not {verb}")
+
+
+@pytest.mark.parametrize("change", Change)
+def test_whatever_has_changed_is_told_and_a_way_round_is_no_clear_way(change: Change) -> None:
+    (sees,) = told(ev.HelpVerified(**DIALOGUE, help=Help.CLEAR_WAY, change=change))
+    assert sees.startswith("robot sees ")
+    assert ("the way clear" in sees) == (change is not Change.LED_ROUND)
 
 
 @pytest.mark.parametrize("resolution", Resolution)

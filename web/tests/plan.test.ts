@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { planOf, scenePlace } from "../src/building/plan";
+import { placeOf, planOf, scenePlace } from "../src/building/plan";
 import { floorOn, floorShownAt, nearestPlace, whereInWords } from "../src/building/whereabouts";
 import { OFFICE } from "./office_scene";
 
@@ -15,13 +15,22 @@ describe("planOf", () => {
     expect(plan.floors.map(({ name, height }) => [name, height])).toEqual([["F1", 0], ["F2", 3.5]]);
     const [first, second] = plan.floors;
     expect(first?.places.find(({ name }) => name === "hall")?.kind).toBe("waypoint");
-    expect(first?.lanes).toEqual([[1, 3, 1, 0], [1, 0, 5, 0]]);
+    expect(first?.lanes).toMatchObject([
+      { between: ["101", "hall"], segment: [1, 3, 1, 0], door: { name: "101" } },
+      { between: ["hall", "lift"], segment: [1, 0, 5, 0], door: null },
+    ]);
     expect(first?.doors).toEqual([
       { name: "101", segment: [0.5, 1.5, 1.5, 1.5], opensItself: false },
       { name: "auto", segment: [4, 1.5, 5, 1.5], opensItself: true },
     ]);
     expect(first?.box).toEqual({ left: 0, bottom: -1, right: 6, top: 3 });
     expect(second?.walls).toEqual([]);
+  });
+
+  it("says where the building's places are", () => {
+    expect(placeOf(plan, "F2/204")).toMatchObject({ x: 2, y: 1, z: 3.5, floor: "F2" });
+    expect(placeOf(plan, "F2/101")).toBeNull();
+    expect(placeOf(plan, "hall")).toBeNull();
   });
 
   it("says where the scene's places are", () => {

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { ago, outcome } from "../src/run/run_words";
+import { ago, clock, outcome } from "../src/run/run_words";
 import type { RunResult, RunSummary } from "../src/wire/types";
 
 const MINUTE = 60_000;
@@ -16,6 +16,18 @@ describe("how long ago a run began", () => {
     [72 * 60 * MINUTE, "3 days ago"],
   ])("%d ms is %j", (past, words) => {
     expect(ago(1e12 - past, 1e12)).toBe(words);
+  });
+});
+
+describe("a time of a clock", () => {
+  it.each([
+    [7.44, "7.4 s"],
+    [59.96, "1:00.0"],
+    [127.4, "2:07.4"],
+    [3600, "1:00:00.0"],
+    [86_461, "24:01:01.0"],
+  ])("%d s is %j", (time, words) => {
+    expect(clock(time)).toBe(words);
   });
 });
 

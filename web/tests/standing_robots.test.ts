@@ -62,6 +62,6 @@ describe("robots between two frames", () => {
 
 describe("howLong", () => {
   it("is in seconds, then in minutes", () => {
-    expect([3.9, 119, 200].map(howLong)).toEqual(["3 s", "119 s", "3 min"]);
+    expect([3.9, 119, 200, 86_400].map(howLong)).toEqual(["3 s", "119 s", "3 min", "24 h"]);
   });
 });

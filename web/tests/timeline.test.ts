@@ -55,6 +55,11 @@ describe("ticks", () => {
     expect(ticks.length).toBeLessThanOrEqual(most + 1);
     for (const tick of ticks) expect(tick >= from && tick <= to).toBe(true);
   });
+
+  it("are whole minutes where seconds would be too many", () => {
+    expect(ticksOf(0, 600, 10)).toEqual([0, 60, 120, 180, 240, 300, 360, 420, 480, 540, 600]);
+    expect(ticksOf(50, 130, 5)).toEqual([60, 80, 100, 120]);
+  });
 });
 
 describe("transcript", () => {

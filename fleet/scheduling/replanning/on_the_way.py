@@ -34,7 +34,7 @@ def turn_before(
     if path and path[0][1] >= now_s:
         path = ((path[0][0], now_s), *path[1:])
     for (place, there_s), (following, then_s) in pairwise(path):
-        if {place, following} == stopped and then_s > now_s:
+        if {place, following} <= stopped and then_s > now_s:
             if there_s <= now_s:
                 return place, 2 * now_s - there_s
             return next(each for each in path if each[1] >= now_s)

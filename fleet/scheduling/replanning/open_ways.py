@@ -13,16 +13,16 @@ from mend.maps.navigation import NavigationGraph, Way
 class OpenWays:
     """A navigation graph whose ways are closed and opened while robots drive."""
 
-    def __init__(self, graph: NavigationGraph, speed_m_s: float) -> None:
+    def __init__(self, graph: NavigationGraph, speed_m_s: float, starts_s: float = 0.0) -> None:
+        """`starts_s` comes on top of each trip."""
         self._whole = graph
-        self._speed_m_s = speed_m_s
+        self._speed_m_s, self._starts_s = speed_m_s, starts_s
         self._closed_until_s: dict[frozenset[str], float] = {}
         self._graph = graph
-        self._known = {frozenset((way.a, way.b)) for way in graph.ways}
 
     def travel(self) -> Travel:
         """Travel between all places as the ways are now."""
-        return travel_in(self._graph, self._speed_m_s)
+        return travel_in(self._graph, self._speed_m_s, starts_s=self._starts_s)
 
     @property
     def closed_until_s(self) -> Mapping[frozenset[str], float]:
@@ -30,12 +30,12 @@ class OpenWays:
         return self._closed_until_s
 
     def close(self, between: Iterable[str], until_s: float) -> Travel:
-        """Close what is between two neighbouring places; travel from then on.
+        """Close what is between two neighbouring places, an elevator altogether; travel from then.
 
         Raises `EventError`, also where ways change at more times than can be planned with.
         """
         before = dict(self._closed_until_s)
-        self._closed_until_s[self._way(between)] = until_s
+        self._closed_until_s |= dict.fromkeys(self._ways(between), until_s)
         self._renew()
         try:
             return self.travel()
@@ -46,7 +46,8 @@ class OpenWays:
 
     def open(self, between: Iterable[str]) -> Travel:
         """Open it again; travel from then on. Raises `EventError`."""
-        self._closed_until_s.pop(self._way(between), None)
+        for way in self._ways(between):
+            self._closed_until_s.pop(way, None)
         self._renew()
         return self.travel()
 
@@ -69,14 +70,19 @@ class OpenWays:
         return tuple((place, begins_s + after_s / speed) for place, after_s in way)
 
     def numbers(self, between: Iterable[str]) -> frozenset[int]:
-        """The numbers of two neighbouring places. Raises `EventError`."""
-        return frozenset(self._whole.index(name) for name in self._way(between))
+        """The numbers of two neighbouring places, of an elevator all its stops.
 
-    def _way(self, between: Iterable[str]) -> frozenset[str]:
-        way = frozenset(between)
-        if way not in self._known:
-            raise EventError(f"there is no way between {' and '.join(sorted(way))}")
-        return way
+        Raises `EventError`.
+        """
+        places = frozenset[str]().union(*self._ways(between))
+        return frozenset(self._whole.index(name) for name in places)
+
+    def _ways(self, between: Iterable[str]) -> frozenset[frozenset[str]]:
+        ends = frozenset(between)
+        ways = self._whole.together(ends)
+        if not ways:
+            raise EventError(f"there is no way between {' and '.join(sorted(ends))}")
+        return ways
 
     def _renew(self) -> None:
         ways = (self._now(way) for way in self._whole.ways)

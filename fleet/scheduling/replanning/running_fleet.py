@@ -6,11 +6,13 @@ routes of those robots only whose plan rested on what is not so any more.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import chain
 from math import inf
 
 from mend.fleet.scheduling.checker import require_valid
+from mend.fleet.scheduling.partial_routes import items_in
 from mend.fleet.scheduling.problem import Item, Problem, ProblemError
 from mend.fleet.scheduling.replanning import observed_stops
 from mend.fleet.scheduling.replanning.events import (
@@ -42,6 +44,7 @@ from mend.fleet.scheduling.replanning.open_ways import OpenWays
 from mend.fleet.scheduling.replanning.plan_repair import PlanRepair
 from mend.fleet.scheduling.replanning.residual_problem import ResidualProblem
 from mend.fleet.scheduling.replanning.robot_state import TrackedRobot
+from mend.fleet.scheduling.replanning.transfer_saving import TransferSaving, transfer_saving
 from mend.fleet.scheduling.schedule import Route, Schedule
 from mend.fleet.scheduling.tolerance import CHECK_S
 
@@ -145,6 +148,19 @@ class RunningFleet:
         """What every robot is still to do, with the slack of each stop."""
         left: dict[str, tuple[NextStop, ...]] = dict.fromkeys(self.robots, ())
         return left if self._plan is None else {**left, **self._plan.stops()}
+
+    def transfer_savings(self, names: Iterable[str]) -> dict[str, TransferSaving]:
+        """What it saves that these items change robots, as far as they are in a plan that holds."""
+        left, savings = self._state.residual_problem(), dict[str, TransferSaving]()
+        if left is None:
+            return savings
+        numbers = {self._state.items[n].item.name: number for number, n in enumerate(left.items)}
+        planned = set(items_in(left.routes))
+        for name in names:
+            if numbers.get(name) in planned:
+                with suppress(ValueError):
+                    savings[name] = transfer_saving(left, numbers[name])
+        return savings
 
     def leaves_s(self, name: str, stop: NextStop) -> float:
         """When a robot has to leave, at the latest, to begin its next stop as planned."""

@@ -67,7 +67,12 @@ class StepWalk:
         progress.step, progress.was_done = number, None
         name = progress.planned.steps[number - 1].name
         self._work.report(
-            StepStarted(execution=self._work.assignment.execution, step=number, name=name)
+            StepStarted(
+                execution=self._work.assignment.execution,
+                step=number,
+                name=name,
+                phase=progress.phase,
+            )
         )
         tries = watch.tries(progress.phase) or [Try(math.inf, 1.0)]
         looks = progress.phase is Phase.APPROACH and bool(watch.tries(Phase.PREPARE))

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.behaviors.behavior import (
+    MEETS_M,
     AwaitItem,
     BaseBehavior,
     BaseSituation,
@@ -38,4 +39,4 @@ class CollectItem(BaseBehavior):
             raise CommandError(
                 f"its basket has room for {basket.most_items} items, and holds {held}"
             )
-        return [*steps_to(place, situation), AwaitItem(f"collect {item}", item, place)]
+        return [*steps_to(place, situation, MEETS_M), AwaitItem(f"collect {item}", item, place)]

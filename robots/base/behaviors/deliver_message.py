@@ -1,12 +1,13 @@
 """`deliver_message`: drive to a place, tell people something, and have that confirmed."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Annotated, ClassVar
 
 from pydantic import AfterValidator, Field
 
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.behaviors.behavior import (
+    MEETS_M,
     BaseBehavior,
     BaseSituation,
     BaseStep,
@@ -20,18 +21,27 @@ MOST_CHARACTERS = 300
 _QUOTES = frozenset('“”„‟«»"')
 
 
-def _require_sayable(message: str) -> str:
-    """What is shown between quotation marks has none of its own, or it would seem to end there."""
-    if not can_be_shown(message) or not _QUOTES.isdisjoint(message):
-        raise ValueError(
-            "a message has only characters that can be seen, no double quotation marks, and no "
-            "blank at its ends"
-        )
-    return message
+def require_sayable(what: str) -> Callable[[str], str]:
+    """A check of a text, `what` it is called, that robots say as somebody has written it.
+
+    What is shown between quotation marks has none of its own, or it would seem to end there.
+    """
+
+    def require(text: str) -> str:
+        if not can_be_shown(text) or not _QUOTES.isdisjoint(text):
+            raise ValueError(
+                f"{what} has only characters that can be seen, no double quotation marks, and no "
+                "blank at its ends"
+            )
+        return text
+
+    return require
 
 
 Message = Annotated[
-    str, Field(min_length=1, max_length=MOST_CHARACTERS), AfterValidator(_require_sayable)
+    str,
+    Field(min_length=1, max_length=MOST_CHARACTERS),
+    AfterValidator(require_sayable("a message")),
 ]
 
 
@@ -50,4 +60,4 @@ class DeliverMessage(BaseBehavior):
 
     def steps(self, parameters: StrictModel, situation: BaseSituation) -> Sequence[BaseStep]:
         assert isinstance(parameters, MessageParameters), "commands are checked before"
-        return [*steps_to(parameters.place, situation), Tell("tell the message")]
+        return [*steps_to(parameters.place, situation, MEETS_M), Tell("tell the message")]

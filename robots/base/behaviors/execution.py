@@ -6,21 +6,27 @@ from mend.robots.base.base import Base
 from mend.robots.base.battery import ENOUGH, LOW
 from mend.robots.base.behaviors.behavior import (
     UNHEARD,
+    Arrive,
     AwaitItem,
     AwaitTaken,
     BaseStep,
     Charging,
     Drive,
     GetIn,
+    Meet,
     RideUntilThere,
     StandingStep,
     Tell,
+    phase_of,
 )
 from mend.robots.base.behaviors.driving import NEAR_M, Driving
 from mend.robots.base.behaviors.handling import Handling
+from mend.robots.base.behaviors.other_elevator import OtherElevator
 from mend.robots.base.behaviors.progress import BaseProgress
-from mend.robots.base.behaviors.riding import Riding
+from mend.robots.base.behaviors.riding import Riding, place_in
 from mend.robots.base.behaviors.watch import BaseWatch
+from mend.robots.base.companion import CAUGHT_UP_M
+from mend.robots.base.way_ahead import WayAhead
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import Execution
 from mend.robots.execution.execution_state import ExecutionState
@@ -47,27 +53,31 @@ class BaseExecution(Execution[BaseProgress]):
         super().__init__(id, progress, base, report)
         self._base = base
         self._watch = BaseWatch(id, behavior, progress, base, monitors, report)
-        self._driving = Driving(base, progress, self._watch)
-        self._riding = Riding(base, self._driving, progress, self._watch)
+        self._other = OtherElevator(base, progress, report)
+        self._driving = Driving(base, progress, self._watch, report)
+        self._riding = Riding(base, self._driving, progress, self._watch, self._other)
         self._handling = Handling(base, progress, self._watch)
         self._done = 0
         self._asked_whether_heard = False
 
-    def way_is_clear(self) -> bool:
+    def way_ahead(self) -> WayAhead:
         """Whether the step under way, or else the next, could be taken, as far as is seen."""
         left = self._progress.steps[self._done :]
         try:
             match left[0] if left else None:
                 case Drive() as drive:
-                    return self._base.gets_to(drive.to)
-                case GetIn() as step:
-                    is_open = self._base.elevators.is_open_for(step.ride)
-                    return is_open and self._base.gets_to(step.ride.inside)
-                case RideUntilThere() as step:
-                    return self._riding.is_over(step.ride)
+                    return self._base.way_to(drive.to, self._watch.going_round.patience_s())
+                case GetIn() as step if self._base.elevators.is_open_for(step.ride):
+                    return self._base.way_to(place_in(step), 0.0)
+                case RideUntilThere() as step if self._riding.is_over(step.ride):
+                    return WayAhead.FREE
+                case GetIn() as step if self._other.leads_there(step):
+                    return WayAhead.ROUND
+                case GetIn() | RideUntilThere():
+                    return WayAhead.BARRED
         except CommandError:
-            return False
-        return True
+            return WayAhead.BARRED
+        return WayAhead.FREE
 
     def felt(self) -> FeltLoad | None:
         """What the basket feels that is not what the step under way, or else the next, needs."""
@@ -79,6 +89,15 @@ class BaseExecution(Execution[BaseProgress]):
                 return load.taken(self._base.basket.memory.items.get(item, 0.0))
             case _:
                 return load.as_remembered()
+
+    def accompanied(self) -> bool:
+        """Whether it sees whom it escorts, as near as the step under way, or the next, needs."""
+        left = self._progress.steps[self._done :]
+        match left[0] if left else None:
+            case RideUntilThere(ride=ride):
+                return self._riding.is_led_in(ride)
+            case _:
+                return self._base.company.is_within(CAUGHT_UP_M)
 
     def resume(self, told: Resume) -> Routine[None]:
         """Go on; who asked whether a message was heard is told so by that alone."""
@@ -95,15 +114,19 @@ class BaseExecution(Execution[BaseProgress]):
         return min(max(0.0, 1.0 - following.left_m / following.length_m), 1.0)
 
     def end(self) -> None:
+        self._other.give_up()
         self._base.elevators.withdraw()
         self._base.basket.withdraw()
+        self._base.companion.leave()
         super().end()
 
     def _walk(self, *, resumed: bool) -> Routine[bool]:
         progress = self._progress
         progress.step, progress.blocked_since_s = BEFORE_FIRST_STEP, None
-        progress.wait = progress.standing = None
+        progress.wait = progress.standing = progress.alone_since_s = None
+        self._base.company.start_anew()
         self._forget_other_offers()
+        self._invite()
         self._watch.check()
         yield from self._find_out()
         yield from self._fill_up()
@@ -112,13 +135,13 @@ class BaseExecution(Execution[BaseProgress]):
         if self._is_elsewhere():
             self._done -= 1
         progress.move_to(ExecutionState.RUNNING)
-        for number in range(self._done + 1, len(progress.steps) + 1):
-            progress.step = number
+        while self._done < len(progress.steps):
+            progress.step = self._done + 1
             if resumed:
-                self._report(Resumed(execution=self.id, step=number))
+                self._report(Resumed(execution=self.id, step=progress.step))
                 resumed = False
-            yield from self._take(progress.steps[number - 1])
-            self._done = number
+            if (yield from self._take(progress.steps[self._done])):
+                self._done += 1
         progress.move_to(ExecutionState.CONFIRMING)
         self._watch.check()
         yield from self._find_out()
@@ -129,7 +152,16 @@ class BaseExecution(Execution[BaseProgress]):
         steps = self._progress.steps
         before = steps[self._done - 1] if self._done else None
         stays = self._done == len(steps) or isinstance(steps[self._done], StandingStep)
-        return stays and isinstance(before, Drive) and not self._driving.is_at(before.to)
+        return stays and isinstance(before, Drive) and not self._driving.is_about_at(before)
+
+    def _invite(self) -> None:
+        """Have those hear of it whom it is to meet, or to lead."""
+        for step in self._progress.steps[self._done :]:
+            match step:
+                case Meet(person=person, place=place):
+                    self._base.companion.expect(person, place)
+                case Arrive(person=person):
+                    self._base.companion.lead(person)
 
     def _forget_other_offers(self) -> None:
         """What was offered where it stood is offered no more by who sets about something else."""
@@ -163,14 +195,16 @@ class BaseExecution(Execution[BaseProgress]):
             for each in self._progress.steps
         )
 
-    def _take(self, step: BaseStep) -> Routine[None]:
-        """One step. Raises `Interruption`."""
-        self._report(StepStarted(execution=self.id, step=self.step, name=step.name))
+    def _take(self, step: BaseStep) -> Routine[bool]:
+        """One step; False if other steps are taken instead. Raises `Interruption`."""
+        self._report(
+            StepStarted(execution=self.id, step=self.step, name=step.name, phase=phase_of(step))
+        )
         match step:
             case Drive():
                 yield from self._driving.take(step)
             case GetIn():
-                yield from self._riding.get_in(step)
+                return (yield from self._riding.get_in(step))
             case RideUntilThere():
                 yield from self._riding.ride(step)
             case AwaitItem():
@@ -181,6 +215,11 @@ class BaseExecution(Execution[BaseProgress]):
                 yield from self._handling.tell(step)
             case Charging():
                 yield from self._handling.charge(step)
+            case Meet():
+                yield from self._handling.meet(step)
+            case Arrive():
+                yield from self._handling.arrive(step)
+        return True
 
     def _react(self, interruption: Interruption) -> Routine[None]:
         self._asked_whether_heard = str(interruption) == UNHEARD
@@ -188,6 +227,7 @@ class BaseExecution(Execution[BaseProgress]):
 
     def _go_to_rest(self) -> Routine[None]:
         """A base rests where it stands, but in no cabin."""
+        self._other.give_up()
         self._base.elevators.withdraw()
         self._base.basket.withdraw()
         yield from self._base.settle()

@@ -1,7 +1,9 @@
 """`go_to`: drive to a place, and ride to its floor."""
 
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import Annotated, ClassVar
+
+from pydantic import Field
 
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.behaviors.behavior import (
@@ -14,9 +16,13 @@ from mend.tasks.scene import Name
 
 
 class GoToParameters(StrictModel):
-    """`place`: where to go, and where to face there."""
+    """`place`: where to go, and where to face there.
+
+    `near_m`: so near is near enough where something keeps it from getting nearer.
+    """
 
     place: Name
+    near_m: Annotated[float, Field(ge=0.0, le=3.0)] = 0.0
 
 
 class GoTo(BaseBehavior):
@@ -30,4 +36,4 @@ class GoTo(BaseBehavior):
 
     def steps(self, parameters: StrictModel, situation: BaseSituation) -> Sequence[BaseStep]:
         assert isinstance(parameters, GoToParameters), "commands are checked before"
-        return steps_to(parameters.place, situation)
+        return steps_to(parameters.place, situation, parameters.near_m)

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.behaviors.behavior import (
+    MEETS_M,
     AwaitTaken,
     BaseBehavior,
     BaseSituation,
@@ -25,4 +26,4 @@ class HandOverItem(BaseBehavior):
         item, place = parameters.item, parameters.place
         if situation.basket.memory.handed_over.get(item) == place:
             return []
-        return [*steps_to(place, situation), AwaitTaken(f"hand over {item}", item, place)]
+        return [*steps_to(place, situation, MEETS_M), AwaitTaken(f"hand over {item}", item, place)]

@@ -4,9 +4,16 @@ from collections.abc import Callable
 
 from mend.robots.base.base import Base
 from mend.robots.base.battery import FULL
-from mend.robots.base.behaviors.behavior import AwaitItem, AwaitTaken, StandingStep
+from mend.robots.base.behaviors.behavior import (
+    Arrive,
+    AwaitItem,
+    AwaitTaken,
+    Meet,
+    StandingStep,
+)
 from mend.robots.base.behaviors.progress import BaseProgress, StandingWait
 from mend.robots.base.behaviors.watch import BaseWatch
+from mend.robots.base.companion import CAUGHT_UP_M
 from mend.robots.execution.routine import Routine
 
 
@@ -41,6 +48,18 @@ class Handling:
     def charge(self, step: StandingStep) -> Routine[None]:
         """Stand until the battery is full. Raises `Interruption`."""
         yield from self._await(step, until=lambda: self._base.battery.share >= FULL)
+
+    def meet(self, step: Meet) -> Routine[None]:
+        """Wait until somebody is there. Raises `Interruption`."""
+        yield from self._await(step, until=lambda: self._base.company.is_within(CAUGHT_UP_M))
+        self._base.companion.leave()
+
+    def arrive(self, step: Arrive) -> Routine[None]:
+        """Wait until whom it has led is there, too. Raises `Interruption`."""
+        self._progress.alone_since_s = self._base.body.time_s()
+        yield from self._await(step, until=lambda: self._base.company.is_within(CAUGHT_UP_M))
+        self._progress.alone_since_s = None
+        self._base.companion.leave()
 
     def _await(self, step: StandingStep, until: Callable[[], bool]) -> Routine[None]:
         self._progress.standing = StandingWait(step, self._base.body.time_s())

@@ -1,16 +1,12 @@
 """How far a base's execution has come."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from mend.robots.base.behaviors.behavior import (
-    AwaitItem,
-    AwaitTaken,
     BaseStep,
-    Charging,
-    Drive,
     StandingStep,
-    Tell,
+    phase_of,
 )
 from mend.robots.base.ways import Ride
 from mend.robots.execution.execution_state import ExecutionState
@@ -47,7 +43,8 @@ class BaseProgress(Progress):
     `blocked_since_s`: since when it has stood before something; None while it drives. `stalled_s`:
     how long it has come no nearer, although it may move. `no_way`: why it knows no way. `wait`: for
     what elevator it waits, and `standing` for what people. `heard`: somebody has said that the
-    message was heard.
+    message was heard. `awaits_s`: since when it has waited for elevators that have not come.
+    `alone_since_s`: since when it has waited for whom it leads.
     """
 
     steps: Sequence[BaseStep] = ()
@@ -57,6 +54,8 @@ class BaseProgress(Progress):
     wait: Wait | None = None
     standing: StandingWait | None = None
     heard: bool = False
+    awaits_s: dict[str, float] = field(default_factory=dict)
+    alone_since_s: float | None = None
 
     @property
     def taken(self) -> BaseStep | None:
@@ -72,16 +71,6 @@ class BaseProgress(Progress):
             return Phase.PREPARE
         if self.wait is not None:
             return Phase.RIDE
-        match self.taken:
-            case Drive(phase=phase):
-                return phase
-            case AwaitItem():
-                return Phase.LOAD
-            case AwaitTaken():
-                return Phase.UNLOAD
-            case Tell():
-                return Phase.TELL
-            case Charging():
-                return Phase.CHARGE
-            case _:
-                return Phase.TRAVEL
+        # Who gets into a cabin drives: what is in its way there is in its way as anywhere.
+        phase = phase_of(self.taken)
+        return Phase.TRAVEL if phase is Phase.RIDE else phase

@@ -4,12 +4,27 @@ import math
 from collections.abc import Callable, Sequence
 
 from mend.robots.base.base import Base
-from mend.robots.base.behaviors.behavior import AwaitItem, AwaitTaken, Charging, Drive, Tell
+from mend.robots.base.behaviors.behavior import (
+    Arrive,
+    AwaitItem,
+    AwaitTaken,
+    Charging,
+    Drive,
+    Meet,
+    Tell,
+)
+from mend.robots.base.behaviors.going_round import GoingRound
 from mend.robots.base.behaviors.progress import BaseProgress
-from mend.robots.base.monitors.monitor import AwaitedElevator, BaseView, Power, StandingFor
+from mend.robots.base.monitors.monitor import (
+    AwaitedElevator,
+    BaseView,
+    Left,
+    Power,
+    StandingFor,
+)
 from mend.robots.execution.monitor import AnyMonitor
 from mend.robots.execution.watch import Watch
-from mend.robots.link.messages import ReportBody
+from mend.robots.link.messages import Detection, ReportBody
 
 
 class BaseWatch(Watch[BaseView, BaseProgress]):
@@ -27,6 +42,7 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
         """`behavior`: the name by which monitors know the one that is executed."""
         super().__init__(execution, behavior, progress, base, monitors, report)
         self._base = base
+        self.going_round = GoingRound(base, progress, report)
         self._next_check_s = -math.inf
 
     def check_if_due(self) -> None:
@@ -64,8 +80,12 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
                 lacks=self._lacks(),
                 missing_kg=self._missing_kg(),
                 power=self._power(),
+                left=self._left(now),
             )
         )
+
+    def _copes_with(self, monitor: AnyMonitor, detection: Detection) -> bool:
+        return self.going_round.copes_with(monitor.issue, detection)
 
     def _standing(self, now_s: float) -> StandingFor | None:
         standing = self._progress.standing
@@ -74,8 +94,15 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
         match standing.step:
             case AwaitItem(item=item, place=place) | AwaitTaken(item=item, place=place):
                 return StandingFor(item, place, now_s - standing.since_s)
+            case Meet(place=place) | Arrive(place=place):
+                return StandingFor(None, place, now_s - standing.since_s)
             case Tell() | Charging():
                 return StandingFor(None, None, now_s - standing.since_s)
+
+    def _left(self, now_s: float) -> Left | None:
+        """How long it has waited for whom it leads."""
+        since_s = self._progress.alone_since_s
+        return None if since_s is None else Left(now_s - since_s, self._base.company.last)
 
     def _power(self) -> Power:
         battery = self._base.battery

@@ -30,6 +30,8 @@ class Lost(BaseMonitor[LostPatience]):
             Phase.UNLOAD,
             Phase.TELL,
             Phase.CHARGE,
+            Phase.MEET,
+            Phase.ARRIVE,
             Phase.CONFIRM,
         }
     )

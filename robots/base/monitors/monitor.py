@@ -6,6 +6,7 @@ from typing import ClassVar, TypeVar
 
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.body import BasePose, RangeScan
+from mend.robots.base.companion import Sighting
 from mend.robots.base.ways import Ride
 from mend.robots.execution.monitor import Monitor, MonitorView
 
@@ -32,12 +33,20 @@ class AwaitedElevator:
 class StandingFor:
     """Who stands at a place for people for `waited_s` so far: to put in or take out an item.
 
-    Without one it has told a message, or is charged.
+    Without one it has told a message, waits for a person, or is charged.
     """
 
     item: str | None
     place: str | None
     waited_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Left:
+    """Whom a base leads does not follow: for `waited_s` so far; where they were seen `last`."""
+
+    waited_s: float
+    last: Sighting | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +73,8 @@ class BaseView(MonitorView):
     long it has not known where it is; `guesses` says where it may be then, likeliest first (`at
     F1-101`). `standing`: what it waits for people to do. `lacks`: what it is to hand over and was
     not given; `missing_kg`: how much less there is in its basket than it was given. `between`: the
-    neighbouring places between which is what leaves it no way on.
+    neighbouring places between which is what leaves it no way on. `left`: it waits for whom it
+    leads.
     """
 
     pose: BasePose
@@ -83,6 +93,7 @@ class BaseView(MonitorView):
     missing_kg: float = 0.0
     power: Power = Power()
     between: tuple[str, str] | None = None
+    left: Left | None = None
 
 
 class BaseMonitor(Monitor[P, BaseView]):

@@ -33,7 +33,7 @@ _GETS_ON_M = 0.3
 _THERE_M = 0.02
 _STILL_THERE_M = 0.04
 """At the goal it turns; only farther off than this it drives to it again."""
-_FACES_GOAL_M = 1.0
+FACES_GOAL_M = 1.0
 """Who goes sideways turns as it is to stand at the end once it is so near to it."""
 _STANDS_M_S = 0.01
 
@@ -55,6 +55,7 @@ class WayFollower:
         self._way, self.goal = Polyline(way), goal
         self._along_m = 0.0
         self._before: BasePose | None = None
+        self._unspent_m = 0.0
         self._at_end = False
         self._kept = NO_WAY
         self.length_m = self._way.length_m
@@ -74,6 +75,11 @@ class WayFollower:
         """Whether it could go on along its way, to its end or by so much at least."""
         ahead_m = self._samples_m()
         return self._leads_on(self._route(here, points, ahead_m, by_m), ahead_m, by_m)
+
+    @property
+    def ahead_m(self) -> float:
+        """How far its way still leads, whatever is on it."""
+        return self.length_m - self._along_m
 
     @property
     def turns_at_end(self) -> bool:
@@ -96,12 +102,16 @@ class WayFollower:
     def _advance(self, here: BasePose) -> None:
         """Find how far on the way it has come: no farther than it can have moved.
 
-        Who goes back to get round something still wants to get as far as before.
+        Who cuts a corner is nearest to what is before that for a while, and then far beyond. Who
+        goes back to get round something still wants to get as far as before.
         """
         moved_m = 0.0 if self._before is None else here.distance_m(self._before)
         self._before = here
-        most_m = min(self._along_m + 2.0 * moved_m + 1e-3, self.length_m)
-        self._along_m = self._way.nearest_m(here.x, here.y, self._along_m, most_m)
+        self._unspent_m = min(self._unspent_m + 2.0 * moved_m, _SEEN_AHEAD_M)
+        most_m = min(self._along_m + self._unspent_m + 1e-3, self.length_m)
+        along_m = self._way.nearest_m(here.x, here.y, self._along_m, most_m)
+        self._unspent_m = max(0.0, self._unspent_m - (along_m - self._along_m))
+        self._along_m = along_m
 
     def _samples_m(self) -> Points:
         """How far along the way the points are that it may get to next."""
@@ -147,6 +157,6 @@ class WayFollower:
         assert route.reached is not None, "it leads on"
         self.left_m = route.cost_m + self.length_m - float(ahead_m[route.reached])
         towards = in_frame_of(np.array([route.carrot]), here)[0]
-        if off_m > _FACES_GOAL_M:
+        if off_m > FACES_GOAL_M:
             turn_rad = math.atan2(towards[1], towards[0])
         return Steering((float(towards[0]), float(towards[1])), turn_rad)

@@ -51,6 +51,8 @@ Accepted = Annotated[str, Header(alias="accept-encoding")]
 @router.get("/edit/{tree}")
 @router.get("/start")
 @router.get("/start/{tree}")
+@router.get("/fleet")
+@router.get("/fleet/{site}")
 @router.get("/requests")
 @router.get("/robots/{robot}/ask")
 @router.get("/settings")

@@ -18,7 +18,9 @@ from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found, LegEnd, LegOutcome
 from mend.fleet.dispatch.setting import Policy
+from mend.fleet.dispatch.snapshot import DispatcherSnapshot
 from mend.fleet.requests import LegAction, Recurrence, RequestStatus, request_of
+from mend.fleet.scheduling.replanning.transfer_saving import TransferSaving
 
 HANDS_OVER = {"transfer_places": ("c",), "transfer_s": 0.0}
 
@@ -193,6 +195,28 @@ def handing_over() -> Dispatcher:
     dispatcher = Dispatcher(office(), setting.model_copy(update={"robots": robots}))
     assert dispatcher.submit(asked(origin="a", destination="e", latest_s=52.0), 0.0).booked
     return dispatcher
+
+
+def test_what_only_two_robots_can_bring_saves_no_time_that_could_be_told() -> None:
+    assert handing_over().log[-1].transfers == {"tea": TransferSaving()}
+
+
+def test_the_plan_says_what_changing_robots_saves_against_one_alone() -> None:
+    setting = fleet_of("a", "e", **HANDS_OVER)
+    ends = setting.robots[0].model_copy(update={"works_until_s": 29.0})
+    setting = setting.model_copy(update={"robots": (ends, setting.robots[1])})
+    dispatcher = Dispatcher(office(), setting)
+    dispatcher.submit(asked(origin="a", destination="e"), 0.0)
+    # Alone r1 drives 80 m and is done at 90 s; together both drive 60 m and are done at 50 s.
+    assert dispatcher.log[-1].transfers == {"tea": TransferSaving(sooner_s=40.0, less_m=20.0)}
+    kept = DispatcherSnapshot.model_validate_json(dispatcher.snapshot().model_dump_json())
+    assert Dispatcher.restored(office(), setting, kept).log == dispatcher.log
+
+
+def test_who_changes_no_robots_saves_nothing_by_that() -> None:
+    dispatcher = dispatcher_for("a", "e", **HANDS_OVER)
+    dispatcher.submit(asked(), 0.0)
+    assert dispatcher.log[-1].transfers == {}
 
 
 def test_item_changes_robots_and_is_taken_after_it_was_given() -> None:

@@ -110,6 +110,18 @@ def test_trip_equals_a_plain_search_and_never_beats_a_walk(
             assert trip.arrival_s >= walked_s - 1e-6
 
 
+@given(graphs())
+@settings(deadline=None)
+def test_each_trip_is_longer_by_what_starting_takes_and_staying_is_not(
+    graph: NavigationGraph,
+) -> None:
+    plain, longer = travel_in(graph), travel_in(graph, starts_s=2.0)
+    trips = ~np.eye(COUNT, dtype=bool)
+    assert longer.time_s[trips] == pytest.approx(plain.time_s[trips] + 2.0)
+    assert not longer.time_s[~trips].any()
+    assert np.array_equal(longer.distance_m, plain.distance_m)
+
+
 @given(graphs(), st.integers(0, 60).map(float), st.integers(0, 20).map(float))
 @settings(deadline=None)
 def test_who_leaves_later_is_never_there_earlier(

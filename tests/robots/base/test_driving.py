@@ -236,7 +236,7 @@ class Gates(StraightWays):
 
     closed = False
 
-    def path(self, here: BasePose, to: BasePose) -> list[tuple[float, float]]:  # noqa: ARG002
+    def path(self, here: BasePose, to: BasePose, *_: object) -> list[tuple[float, float]]:  # noqa: ARG002
         if self.closed:
             raise CommandError("the gate is closed, and there is no other way")
         return [(2.0, 2.0), (to.x, to.y)]

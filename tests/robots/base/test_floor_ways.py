@@ -6,8 +6,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from mend.maps.building.building import Building, BuildingDocument, FloorPlace
+from mend.maps.building.building import Building, BuildingDocument, FloorPlace, PlaceKind
 from mend.maps.building.clearance import distances_m
 from mend.maps.building.crossing import crossed_by
 from mend.maps.building.random_building import random_building
@@ -145,6 +147,24 @@ def test_rides_lead_from_floor_to_floor_and_end_where_the_place_is(seed: int) ->
     assert not ways.rides(here, pose_of(frame, low.places["102"], low.height))
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_the_way_to_where_one_waits_and_from_there_leads_round_the_cabin(seed: int) -> None:
+    building = Building(random_building(seed, 2, 12))
+    ways = FloorWays(building, Frame(), 1.0, 0.3)
+    floors = building.floors
+    stop = floors["F1"].places["lift1"]
+    here = pose_of(Frame(), floors["F1"].places["101"], floors["F1"].height)
+    (ride,) = ways.rides(here, pose_of(Frame(), floors["F2"].places["202"], floors["F2"].height))
+    assert ride.wait_at is not None
+    for begin, end in ((here, ride.wait_at), (ride.wait_at, here)):
+        way = [(begin.x, begin.y), *ways.path(begin, end)]
+        for a, b in pairwise(way):
+            points = np.linspace(a, b, 50)
+            assert np.hypot(points[:, 0] - stop.x, points[:, 1] - stop.y).min() > 0.9 - 1e-6
+            leg = np.array([*a, *b])
+            assert not len(crossed_by(leg, floors["F1"].wall_segments))
+
+
 def test_who_is_in_a_cabin_does_not_wait_for_it() -> None:
     building = Building(random_building(2, 3, 6))
     ways = FloorWays(building, Frame(), 1.0, 0.3)
@@ -152,6 +172,24 @@ def test_who_is_in_a_cabin_does_not_wait_for_it() -> None:
     inside = pose_of(Frame(), floors["F2"].places["lift1"], floors["F2"].height)
     (ride,) = ways.rides(inside, pose_of(Frame(), floors["F1"].places["101"], 0.0))
     assert ride.wait_at is None
+
+
+def test_a_cabin_has_room_for_two_beside_its_middle_unless_walls_are_too_near() -> None:
+    document = random_building(2, 3, 6)
+    floor = document.floors["F2"]
+    to = pose_of(Frame(), document.floors["F1"].places["101"], 0.0)
+    here = pose_of(Frame(), floor.places["201"], floor.height)
+    (ride,) = FloorWays(Building(document), Frame(), 1.0, 0.3).rides(here, to)
+    assert ride.aside is not None
+    assert ride.aside.distance_m(ride.inside) == pytest.approx(0.25)
+    off_x, off_y = ride.aside.x - ride.inside.x, ride.aside.y - ride.inside.y
+    ends = [(ride.inside.x + n * off_x, ride.inside.y + n * off_y) for n in (2.1, 2.4)]
+    walls = [*floor.walls, (*ends[0], *ends[1])]
+    told = document.model_dump(mode="json")
+    told["floors"]["F2"]["walls"] = walls
+    narrow = Building(BuildingDocument.model_validate_json(json.dumps(told)))
+    (ride,) = FloorWays(narrow, Frame(), 1.0, 0.3).rides(here, to)
+    assert ride.aside is None
 
 
 def test_the_walls_around_a_pose_are_known_and_a_cabin_has_a_name() -> None:
@@ -168,3 +206,82 @@ def test_the_walls_around_a_pose_are_known_and_a_cabin_has_a_name() -> None:
 
 def pose_of(frame: Frame, place: FloorPlace, height_m: float) -> BasePose:
     return BasePose(*frame.to_robot(place.x, place.y), 0.0, height_m)
+
+
+def rings(seed: int) -> tuple[Building, FloorWays]:
+    building = Building(random_building(seed % 7, 1 + seed % 3, 20 + 10 * (seed % 2)))
+    return building, FloorWays(building, Frame(), 1.0, 0.3)
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 6), data=st.data())
+def test_what_is_closed_is_gone_by_only_where_no_other_way_leads(
+    seed: int, data: st.DataObject
+) -> None:
+    """Against a search of its own: whether a way is left once what is closed is taken out."""
+    building, ways = rings(seed)
+    floor = building.floors["F1"]
+    lanes = [frozenset(f"F1/{each}" for each in lane.between) for lane in floor.lanes]
+    shut = data.draw(st.sets(st.sampled_from(lanes), max_size=8))
+    names = [n for n, each in floor.places.items() if each.kind is not PlaceKind.ELEVATOR]
+    start, goal = (data.draw(st.sampled_from(names)) for _ in range(2))
+    here, to = (pose_of(Frame(), floor.places[each], floor.height) for each in (start, goal))
+    closed = dict.fromkeys(shut)
+    path = ways.path(here, to, closed)
+    assert math.dist(path[-1], (to.x, to.y)) < 1e-9
+    stops = {f"F1/{n}" for n, each in floor.places.items() if each.kind is PlaceKind.ELEVATOR}
+    open_ = [each for each in lanes if each not in shut and not each & stops]
+    left = reached_from(f"F1/{start}", open_)
+    assert ways.leads_round(here, to, closed) is (f"F1/{goal}" in left)
+    if f"F1/{goal}" in left:
+        way = [(here.x, here.y), *path]
+        for lane in shut:
+            a, b = (floor.places[each.removeprefix("F1/")] for each in sorted(lane))
+            middle = ((a.x + b.x) / 2, (a.y + b.y) / 2)
+            assert all(off_m(middle, *leg) > 1e-6 for leg in pairwise(way))
+
+
+def reached_from(start: str, lanes: list[frozenset[str]]) -> set[str]:
+    reached, new = set[str](), {start}
+    while new:
+        reached |= new
+        new = {end for lane in lanes if lane & new for end in lane} - reached
+    return reached
+
+
+def off_m(point: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
+    return float(distances_m(np.array([point]), np.array([[*a, *b]]))[0])
+
+
+def test_a_closed_elevator_is_left_where_another_one_rides_there() -> None:
+    building = Building(random_building(1, 3, 60))
+    ways = FloorWays(building, Frame(), 1.0, 0.3)
+    floors = building.floors
+    here = pose_of(Frame(), floors["F1"].places["101"], floors["F1"].height)
+    to = pose_of(Frame(), floors["F3"].places["301"], floors["F3"].height)
+    (ride,) = ways.rides(here, to)
+    stops = [f"{f}/{at}" for f, at in building.document.elevators[ride.elevator].stops.items()]
+    closed = {frozenset((a, b)): None for a in stops for b in stops if a != b}
+    (instead,) = ways.rides(here, to, closed)
+    assert instead.elevator != ride.elevator
+    everything = {
+        frozenset((way.a, way.b)): None for way in building.graph.ways if way.kind == "elevator"
+    }
+    assert ways.rides(here, to, everything) == [ride]
+
+
+def test_who_stands_before_what_is_barred_goes_back_from_there() -> None:
+    places: dict[str, object] = {"a": {"x": 0.0, "y": 0.0}, "b": {"x": 10.0, "y": 0.0}}
+    places |= {"c": {"x": 0.0, "y": 9.0}, "d": {"x": 10.0, "y": 9.0}}
+    lanes = [("a", "b"), ("a", "c"), ("c", "d"), ("d", "b")]
+    walls = ((1.0, 1.0, 9.0, 1.0), (-1.0, -1.0, 11.0, -1.0))
+    floor = {"places": places, "lanes": [{"between": each} for each in lanes], "walls": walls}
+    ways = FloorWays(Building(document_of("ring", floor)), Frame(), 1.0, 0.3)
+    here, to = BasePose(7.0, 0.0, 0.0), BasePose(10.0, 0.0, 0.0)
+    lane = frozenset(("F1/a", "F1/b"))
+    assert list(ways.path(here, to)) == [(10.0, 0.0)]
+    round_ = [(0.0, 0.0), (0.0, 9.0), (10.0, 9.0), (10.0, 0.0)]
+    assert list(ways.path(here, to, {lane: "F1/a"})) == round_
+    assert list(ways.path(here, to, {lane: "F1/b"})) == [(10.0, 0.0)]
+    there = BasePose(9.8, 0.0, 0.0)
+    assert list(ways.path(there, to, {lane: "F1/a"})) == [(10.0, 0.0)]

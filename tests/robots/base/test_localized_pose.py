@@ -175,3 +175,14 @@ def test_a_scan_without_returns_is_taken_as_well() -> None:
     blind = RangeScan(np.full(91, np.inf), ANGLES, 1.0)
     driven.pose.note(compose(driven.wheels, np.array([0.5, 0, 0])), blind)
     assert not driven.pose.is_lost
+
+
+def test_it_says_how_sure_it_is_once_it_has_looked_and_while_it_is_not_lost() -> None:
+    driven = Driven()
+    assert driven.pose.covariance() is None
+    driven.drive(0.05)
+    driven.drive(0.5)
+    assert driven.pose.covariance() == [1.0, 0.0, 1.0]
+    driven.localizer.lost = True
+    driven.drive(0.5)
+    assert driven.pose.covariance() is None

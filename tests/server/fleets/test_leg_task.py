@@ -69,23 +69,35 @@ def test_the_same_thing_is_meant_where_it_is_fetched_and_where_it_is_brought() -
     assert fetched.parameters == brought.parameters == {"place": "F1-101", "item": "blue_parcel-p1"}
 
 
+def test_a_person_is_met_where_they_are_and_led_from_there() -> None:
+    request = Escort(name="e", person="Ms Lee", origin="101", destination="102")
+    met, led = (
+        task_of(leg(action=action).model_copy(update={"request": request}), "F1-101").nodes[0]
+        for action in (request.fetching, request.bringing)
+    )
+    assert (met.behavior, led.behavior) == ("meet_person", "escort")
+    assert met.parameters == led.parameters == {"place": "F1-101", "person": "Ms Lee"}
+
+
 def test_each_leg_has_its_own_runs_and_always_the_same() -> None:
-    runs = {run_of(SITE, leg(number), stage) for number in (1, 2) for stage in LegStage}
+    runs = {run_of(SITE, "r0", number, stage) for number in (1, 2) for stage in LegStage}
     assert len(runs) == 4
-    assert run_of(SITE, leg(1), LegStage.DO) == run_of(SITE, leg(1), LegStage.DO)
+    assert run_of(SITE, "r0", 1, LegStage.DO) == run_of(SITE, "r0", 1, LegStage.DO)
 
 
 def test_what_no_robot_can_do_is_refused_before_it_is_booked() -> None:
     behaviors = load_plugins("mend.behaviors")
     require_doable(GoToRoom(name="r", place="101"), behaviors)
     require_doable(PARCEL, behaviors)
-    with pytest.raises(WrongInputError, match="of the kind 'escort'"):
-        require_doable(Escort(name="e", person="Ann", origin="101", destination="102"), behaviors)
+    require_doable(Escort(name="e", person="Ann", origin="101", destination="102"), behaviors)
     with pytest.raises(WrongInputError, match="of the kind 'transport'"):
         require_doable(PARCEL, {})
     quoted = DeliverMessage(name="m", place="101", message='She said "no".')
     with pytest.raises(WrongInputError, match="no double quotation marks"):
         require_doable(quoted, behaviors)
+    long = Escort(name="e", person="A" * 101, origin="101", destination="102")
+    with pytest.raises(WrongInputError, match="person"):
+        require_doable(long, behaviors)
 
 
 def test_every_behavior_of_a_leg_is_one_that_robots_have() -> None:

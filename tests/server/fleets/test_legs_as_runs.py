@@ -1,7 +1,7 @@
 """A fleet hands its legs out as runs, once each, and follows what becomes of them."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -14,6 +14,7 @@ from dispatch_office import asked, dispatcher_for, office, visit
 from mend.errors import ConflictError, NotFoundError
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.requests import RequestStatus
+from mend.robots.link.messages import Driven
 from mend.server.fleets import leg_execution
 from mend.server.fleets.fleet_at_work import FleetAtWork
 from mend.server.fleets.fleet_record import FleetRecord
@@ -23,8 +24,10 @@ from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.journal import events as ev
 from mend.server.journal.sqlite import SqliteJournal
+from mend.server.poses.bases import SeenBase
 from mend.server.runtime.clock import WorldTime
 from mend.server.runtime.views import RunStatus
+from mend.server.sites.odometer import Odometer
 from mend.server.sites.requests import FleetOptions
 from mend.tasks.definition import TaskTreeDefinition
 from mend.tasks.scene import Place, Pose, Scene
@@ -50,12 +53,29 @@ class FakeSite:
         self.gone: set[str] = set()
         self.standing: dict[str, tuple[float, float, float]] = {}
         self.runs: dict[str, UUID] = {}
+        self.bases: dict[str, SeenBase] = {}
+        self.shown_s = 0.0
+        self.odometers: dict[str, Odometer] = {}
+        self.kept_off: set[frozenset[str]] = set()
+        self.stands_still = False
+
+    def odometer(self, robot: str) -> Odometer | None:
+        return self.odometers.get(robot)
+
+    def keep_off(self, closed: Mapping[frozenset[str], float]) -> None:
+        self.kept_off = set(closed)
 
     def rests(self, robot: str) -> bool:
         return robot not in self.busy | self.gone
 
     def run_of(self, robot: str) -> UUID | None:
         return self.runs.get(robot)
+
+    def show_bases(self) -> None:
+        """They are as a test sets them."""
+
+    def base(self, robot: str) -> SeenBase | None:
+        return self.bases.get(robot)
 
     def is_connected(self, robot: str) -> bool:
         return robot not in self.gone
@@ -64,6 +84,8 @@ class FakeSite:
         return self.standing.get(robot)
 
     def let_time_pass(self, until_s: float, rate: float | None) -> bool:  # noqa: ARG002
+        if self.stands_still:
+            return True
         self.time.heard(until_s)
         asyncio.get_running_loop().call_soon(self.changed)
         return True
@@ -113,6 +135,8 @@ class FakeRuns:
         return _View(status, done, of.behavior)
 
     async def abort(self, run: UUID, author: object = None) -> Any:  # noqa: ARG002
+        if not await self.has_run(run):
+            raise NotFoundError(f"there is no run {run}")
         next(each for each in self.runs if each.id == run).ended.set_result(("aborted", False))
         await self.aborted.wait()
 
@@ -154,10 +178,16 @@ class Work:
                 await asyncio.sleep(0)
 
 
-def _fleet(site: Any, runs: FakeRuns, journal: SqliteJournal, of: Dispatcher) -> FleetAtWork:
+def _fleet(
+    site: Any,
+    runs: FakeRuns,
+    journal: SqliteJournal,
+    of: Dispatcher,
+    kept: FleetRecord | None = None,
+) -> FleetAtWork:
     places, options = PlaceNames(office(), SCENE), FleetOptions()
     now = datetime(2026, 1, 2, tzinfo=UTC)
-    return FleetAtWork(site, of, places, options, runs, journal, None, lambda: now, {})
+    return FleetAtWork(site, of, places, options, runs, journal, None, lambda: now, kept)
 
 
 @asynccontextmanager
@@ -225,6 +255,21 @@ async def test_the_journal_tells_when_legs_begin_and_end_once_each_over_a_restar
             ("leg_ended", "r0", 1),
             ("leg_begun", "r0", 2),
         ]
+
+
+@pytest.mark.parametrize(("boot", "told"), [("b1", (7.5, 2.0)), ("b2", (None, None))])
+async def test_the_journal_tells_what_was_driven_for_a_leg_unless_the_robot_began_anew(
+    boot: str, told: tuple[float | None, float | None]
+) -> None:
+    async with working("a") as work:
+        work.site.odometers["r0"] = Odometer("b1", Driven(way_m=100.0, barred_s=5.0))
+        await work.fleet.submit(asked(), None)
+        fetching = await work.runs.nth(1)
+        work.site.odometers["r0"] = Odometer(boot, Driven(way_m=107.5, barred_s=7.0))
+        fetching.ended.set_result(("finished", True))
+        await work.runs.nth(2)
+        (ended,) = [e for e in await work.journal.read(0, 1000) if isinstance(e, ev.LegEnded)]
+        assert (ended.driven_m, ended.barred_s) == told
 
 
 async def test_after_a_restart_the_same_run_goes_on() -> None:
@@ -432,3 +477,9 @@ async def test_a_robot_with_nothing_to_do_makes_way_for_one_that_comes() -> None
 
 def _place_of_r0(dispatcher: Dispatcher) -> str:
     return dispatcher.building.graph.places[dispatcher.fleet.robots["r0"].place].name
+
+
+async def test_who_says_that_an_elevator_is_dead_names_one_that_there_is() -> None:
+    async with working("a") as work:
+        with pytest.raises(NotFoundError, match="there is no elevator 'lift9'"):
+            await work.fleet.found(WayFound(finding="elevator_dead", elevator="lift9"), None)

@@ -7,16 +7,19 @@ from uuid import UUID
 
 import pytest
 from dispatch_office import fleet_of, visit
-from test_legs_as_runs import SCENE, FakeRun, FakeRuns, FakeSite
+from test_legs_as_runs import SCENE, SITE, FakeRun, FakeRuns, FakeSite
 
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found
+from mend.fleet.dispatch.snapshot import DispatcherSnapshot
 from mend.fleet.requests import RequestStatus
 from mend.maps.building.building import Building, BuildingDocument, Floor, FloorPlace, Lane
 from mend.maps.navigation import NavigationGraph, Place, Way
 from mend.robots.link.messages import LASER, Detection
 from mend.server.access.deeds import deed_of
 from mend.server.fleets.fleet_at_work import FleetAtWork
+from mend.server.fleets.fleet_record import FleetRecord
+from mend.server.fleets.fleets import KIND
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.robot_findings import is_led_round
 from mend.server.journal import events as ev
@@ -33,16 +36,20 @@ RING = (*ROW, "ea")
 class Work:
     """A fleet of one robot at `a`, in rooms with such lanes between them."""
 
-    def __init__(self, lanes: tuple[str, ...]) -> None:
+    def __init__(self, lanes: tuple[str, ...], snapshot: DispatcherSnapshot | None = None) -> None:
         places = {name: FloorPlace(x=10.0 * n, y=0.0) for n, name in enumerate("abcde")}
         floor = Floor(places=places, lanes=tuple(Lane(between=(a, b)) for a, b in lanes))
         building = Building(BuildingDocument(building="office", floors={"f": floor}))
         self.site, self.journal = FakeSite(), SqliteJournal(":memory:")
         self.runs = FakeRuns(self.site)
-        self.dispatcher = Dispatcher(building, fleet_of("a"))
+        self.dispatcher = (
+            Dispatcher(building, fleet_of("a"))
+            if snapshot is None
+            else Dispatcher.restored(building, fleet_of("a"), snapshot)
+        )
         names, options = PlaceNames(building, SCENE), FleetOptions()
         self.fleet = FleetAtWork(
-            self.site, self.dispatcher, names, options, self.runs, self.journal, None, _now, {}
+            self.site, self.dispatcher, names, options, self.runs, self.journal, None, _now
         )
 
     async def __aenter__(self) -> "Work":
@@ -73,6 +80,17 @@ class Work:
         )
         await self.journal.append(Entry(events=[event]))
 
+    async def found(self, run: FakeRun, finding: str, *between: str) -> None:
+        event = ev.WayFound(
+            time=1.0,
+            wall_time=NOW,
+            run=run.id,
+            robot=run.robot,
+            finding=finding,
+            between=list(between),
+        )
+        await self.journal.append(Entry(events=[event]))
+
     async def events(self) -> list[ev.Event]:
         return await self.journal.read(0, 1000)
 
@@ -89,22 +107,46 @@ def _now() -> datetime:
 @pytest.mark.parametrize(
     ("issue", "words"), [("blocked", "blocked"), ("door_closed", "door closed")]
 )
-async def test_what_a_robot_finds_counts_until_it_gets_through(issue: str, words: str) -> None:
+async def test_what_a_robot_finds_counts_until_one_has_passed_there(issue: str, words: str) -> None:
     async with Work(RING) as work:
+        work.site.stands_still = True
         await work.fleet.submit(visit(place="c"), None)
         going = await work.runs.nth(1)
         await work.raised(going, issue, "f/b", "f/c")
         await work.until(lambda all_: BC in all_.closed_until_s())
+        await work.until(lambda _: work.site.kept_off == {BC})
         work.site.standing["r0"] = (20.0, 0.0, 0.0)
         last = work.runs.runs[-1]
         last.ended.set_result(("finished", True))
         await work.until(lambda all_: all_.view("visit").status is RequestStatus.DONE)
-        assert not work.dispatcher.closed_until_s()
+        assert BC in work.dispatcher.closed_until_s(), "it may have gone round"
+        await work.found(going, "open", "f/c", "f/b")
+        await work.until(lambda all_: not all_.closed_until_s())
+        await work.until(lambda _: not work.site.kept_off)
         told = [each for each in await work.events() if isinstance(each, ev.FleetTold)]
-        way = "found of the way between f/b and f/c"
-        assert [each.told for each in told] == [f"{way}: {words}", f"{way}: open"]
+        way, back = "found of the way between f/b and f/c", "found of the way between f/c and f/b"
+        assert [each.told for each in told] == [f"{way}: {words}", f"{back}: open"]
         assert [each.finder for each in told] == ["r0", "r0"]
         assert [deed_of(each) for each in told] == [None, None]
+
+
+async def test_what_a_robot_goes_round_by_itself_is_closed_to_all() -> None:
+    async with Work(RING) as work:
+        await work.fleet.submit(visit(place="c"), None)
+        going = await work.runs.nth(1)
+        await work.found(going, "blocked", "f/b", "f/c")
+        await work.until(lambda _: work.site.kept_off == {BC})
+
+
+async def test_what_was_closed_before_a_restart_is_kept_off_after_it() -> None:
+    async with Work(RING) as work:
+        await work.fleet.submit(visit(place="c"), None)
+        await work.found(await work.runs.nth(1), "blocked", "f/b", "f/c")
+        await work.until(lambda _: work.site.kept_off == {BC})
+        kept = (await work.journal.documents(KIND))[str(SITE)]
+        snapshot = FleetRecord.model_validate_json(kept).dispatcher
+    async with Work(RING, snapshot) as again:
+        await again.until(lambda _: again.site.kept_off == {BC})
 
 
 async def test_where_no_other_way_leads_people_help_and_the_plan_stays() -> None:

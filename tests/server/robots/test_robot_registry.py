@@ -700,6 +700,25 @@ async def test_a_robot_is_asked_for_poses_on_every_connection_while_they_are_wan
     await robot.leave()
 
 
+@pytest.mark.usefixtures("sink")
+async def test_poses_that_are_always_wanted_come_whatever_a_run_wants(
+    registry: RobotRegistry,
+) -> None:
+    registry.always_show_poses("arm", 2.0)
+    robot = PlayedRobot(registry)
+    await robot.greet(hello().model_copy(update={"shows": SHOWING}))
+    assert registry.poses("arm") is None
+    assert await robot.hear() == ShowPoses(rate_hz=2.0)
+    registry.show_poses("arm", 20.0)
+    assert await robot.hear() == ShowPoses(rate_hz=20.0)
+    registry.show_poses("arm", 0.0)
+    assert await robot.hear() == ShowPoses(rate_hz=2.0)
+    await robot.say(POSES)
+    assert (await robot.deliver(report(1))).seq == 1
+    assert registry.poses("arm") == POSES
+    await robot.leave()
+
+
 async def test_a_robot_that_shows_nothing_is_never_asked_for_poses(
     registry: RobotRegistry, sink: RecordingSink
 ) -> None:

@@ -36,7 +36,9 @@ def watch(looks: DialogueLooks, dialogue: Any, proxy: Any) -> None:
 
 def seeing(at: tuple[float, float], *, blind: str | None = None) -> Any:
     cup = Sighting(x=at[0], y=at[1], z=0.7, yaw=0.0, time=1.0)
-    return SimpleNamespace(seen={"cup": cup}, there=frozenset(), held=None, blind=blind)
+    return SimpleNamespace(
+        seen={"cup": cup}, there=frozenset(), held=None, blind=blind, led_round=False
+    )
 
 
 @pytest.mark.parametrize(

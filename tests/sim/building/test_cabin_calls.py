@@ -62,6 +62,24 @@ def test_what_people_call_does_not_come_by_itself() -> None:
     shaft.until_open_at("F2")
 
 
+def test_who_was_taken_to_a_wrong_floor_waits_for_another_button_as_often_as_it_takes() -> None:
+    shaft = Shaft(cabin_of(Caller.PEOPLE))
+    shaft.cabin.call(7, "F1", "F3")
+    pressed = ["F2", "F1", "F2", "F3"]
+    shaft.cabin.calls[0].to = "F2"
+    shaft.until_open_at("F1")
+    shaft.inside = [7]
+    for floor in pressed:
+        call = shaft.cabin.call_of(7)
+        assert call is not None
+        call.to = floor
+        shaft.wait(STEP_S)
+        shaft.until_open_at(floor)
+        wants = shaft.cabin.call_of(7)
+        assert (wants is None) == (floor == "F3")
+        assert wants is None or wants.to is None
+
+
 def test_it_does_not_shut_on_anybody() -> None:
     shaft = Shaft(cabin_of())
     shaft.cabin.call(7, "F1", "F2")
@@ -69,6 +87,17 @@ def test_it_does_not_shut_on_anybody() -> None:
     shaft.inside = [7]
     shaft.wait(60.0, door_is_free=False)
     assert shaft.cabin.is_open_at("F1")
+
+
+def test_it_stays_open_for_whom_somebody_in_it_waits_for() -> None:
+    shaft = Shaft(cabin_of())
+    shaft.cabin.call(7, "F1", "F2", stay_open=True)
+    shaft.until_open_at("F1")
+    shaft.inside = [7]
+    shaft.wait(2.0 * HELD_S)
+    assert shaft.cabin.is_open_at("F1")
+    shaft.cabin.call(7, "F1", "F2")
+    shaft.until_open_at("F2")
 
 
 def test_who_does_not_get_in_is_not_waited_for_for_ever() -> None:

@@ -1,11 +1,15 @@
 """Robots ride elevators, ask people where they cannot call them, and notice the wrong floor."""
 
 import json
+import math
 
+import numpy as np
 import pytest
 from building_bench import BuildingBench, made_up
 
 from mend.maps.building.building import Building, BuildingDocument, Caller
+from mend.maps.building.cabin import cabin_walls, stop_of
+from mend.maps.building.clearance import distances_m
 from mend.robots.link.messages import (
     Finished,
     Interrupt,
@@ -17,6 +21,7 @@ from mend.robots.link.messages import (
 )
 from mend.sim.building.buildings import BUILDINGS
 from mend.sim.building.cabin import CabinState
+from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.scene import scene_of
 from mend.sim.world import WorldSetup
 from mend.tasks.intervention import Act, Intervention
@@ -65,6 +70,18 @@ def test_ride_elevator_ends_before_the_elevator_on_the_other_floor() -> None:
     bench.go("robot1", "F2-203", "ride_elevator")
     bench.run()
     assert bench.of(Finished)[-1].found_in_place
+
+
+def test_who_has_got_out_calls_the_elevator_no_more() -> None:
+    bench = BuildingBench(office(Caller.ROBOTS))
+    cabin = bench.world.elevators.cabins["lift1"]
+    for goal in ("F2-201", "F1-102", "F2-203", "F1-101", "F2-202"):
+        bench.reports.clear()
+        bench.go("robot1", goal)
+        bench.run()
+        assert bench.of(Finished)
+        assert not cabin.calls
+        assert cabin.floor == goal[:2]
 
 
 def test_an_elevator_that_people_call_is_asked_for() -> None:
@@ -124,6 +141,20 @@ def test_robots_that_want_one_elevator_ride_one_after_the_other(seed: int) -> No
     assert len(bench.of(Finished)) == 3
     assert not bench.of(IssueDetected)
     assert bench.world.touches == 0
+
+
+@pytest.mark.parametrize("turn", range(16))
+def test_a_cabin_shuts_on_nobody_who_stands_at_its_corner(turn: int) -> None:
+    bench = BuildingBench(office(Caller.ROBOTS))
+    world, robot = bench.world, bench.world.robots[0]
+    cabin, (x, y) = world.elevators.cabins["lift1"], stop_of(world.building, "lift1", "F1")
+    cabin.state, angle = CabinState.OPEN, turn * math.tau / 16
+    robot.stand(FloorPose("F1", x + 0.87 * math.cos(angle), y + 0.87 * math.sin(angle)))
+    for _ in range(200):
+        world.advance_cycle()
+    if cabin.state is not CabinState.OPEN:
+        at = np.array([[robot.at.x, robot.at.y]])
+        assert distances_m(at, cabin_walls((x, y)))[0] >= robot.radius_m
 
 
 def test_who_gives_up_wants_the_elevator_no_more() -> None:

@@ -19,6 +19,14 @@ def hand_over(item: str, place: str = "b") -> Tree:
     return ("hand_over_item", item, place)
 
 
+def meet(person: str, place: str = "a") -> Tree:
+    return ("meet_person", person, place)
+
+
+def escort(person: str, place: str = "b") -> Tree:
+    return ("escort", person, place)
+
+
 def told(tree: Tree, robots: int = 1) -> list[str]:
     nodes: list[GoalNode | BehaviorNode] = []
     lay_out(tree, None, nodes)
@@ -29,7 +37,8 @@ def lay_out(tree: Tree, parent: int | None, nodes: list[GoalNode | BehaviorNode]
     name = f"n{len(nodes)}"
     if isinstance(tree, tuple):
         behavior, item, place = tree
-        parameters = {"item": item, "place": place}
+        handled = "person" if behavior in ("meet_person", "escort") else "item"
+        parameters = {handled: item, "place": place}
         nodes.append(
             BehaviorNode(
                 parent=parent,
@@ -55,6 +64,9 @@ def lay_out(tree: Tree, parent: int | None, nodes: list[GoalNode | BehaviorNode]
         {"then": [collect("mail"), hand_over("mail"), collect("mail", "b")]},
         {"and": [{"then": [collect(each), hand_over(each)]} for each in "qrstuvw"]},
         {"or": [collect("mail"), {"then": [collect("mail"), hand_over("mail")]}]},
+        {"then": [meet("Ann"), escort("Ann"), meet("Ann", "c"), escort("Ann", "d")]},
+        {"and": [{"then": [meet(each), escort(each)]} for each in ("Ann", "Bo")]},
+        {"then": [meet("Ann"), collect("mail"), escort("Ann"), hand_over("mail")]},
     ],
 )
 def test_a_task_that_can_be_carried_out_is_no_problem(tree: Tree) -> None:
@@ -113,3 +125,33 @@ def test_a_deep_tree_is_checked_as_any_other() -> None:
     for _ in range(400):
         tree = {"then": [tree]}
     assert len(told(tree)) == 1
+
+
+@pytest.mark.parametrize(
+    ("tree", "message"),
+    [
+        (
+            escort("Ann"),
+            "'escort_Ann' escorts 'Ann', who may not have been met by then: put a meet_person "
+            "with them before it in a THEN",
+        ),
+        (
+            {"then": [meet("Ann"), meet("Ann"), escort("Ann")]},
+            "'meet_person_Ann' meets 'Ann', whom a robot may lead by then: put an escort of them "
+            "in between",
+        ),
+        (
+            {"then": [meet("Ann"), meet("Bo"), escort("Ann"), escort("Bo")]},
+            "'meet_person_Bo' meets 'Bo' while 'Ann' may still be led: put their escort before it",
+        ),
+    ],
+)
+def test_people_are_met_and_led_one_at_a_time(tree: Tree, message: str) -> None:
+    assert told(tree, robots=2) == [message]
+
+
+def test_children_of_an_and_do_not_escort_one_person() -> None:
+    (message, *_) = told({"and": [meet("Ann"), escort("Ann")]})
+    assert message == (
+        "several children of the AND 'n0' escort 'Ann', in any order: put them into one THEN"
+    )

@@ -18,6 +18,7 @@ const TreesView = later(() => import("../trees/trees_view").then((module) => mod
 const TreeEditor = later(() => import("../trees/tree_editor").then((module) => module.TreeEditor));
 const StartRun = later(() => import("../run/start/start_run").then((module) => module.StartRun));
 const RequestsView = later(() => import("../requests/requests_view").then((module) => module.RequestsView));
+const FleetPage = later(() => import("../fleet/fleet_page").then((module) => module.FleetPage));
 const TouchView = later(() => import("../touch/touch_view").then((module) => module.TouchView));
 const SettingsView = later(() => import("../settings/settings_view").then((module) => module.SettingsView));
 
@@ -70,6 +71,8 @@ function View({ shown }: { shown: Exclude<Route, { view: "touch" }> }) {
       return <StartRun key={shown.tree} tree={shown.tree} />;
     case "requests":
       return <RequestsView />;
+    case "fleet":
+      return <FleetPage site={shown.site} />;
     case "settings":
       return <SettingsView />;
     case "unknown":

@@ -9,11 +9,13 @@ interface ConfirmProps {
   /** What the button says that does it. */
   confirm: string;
   cancel?: string;
+  /** It harms nothing. */
+  harmless?: boolean;
   onConfirm: () => void;
   onCancel: () => void;
 }
 
-export function Confirm({ title, children, confirm, cancel = "Cancel", onConfirm, onCancel }: ConfirmProps) {
+export function Confirm({ title, children, confirm, cancel = "Cancel", harmless = false, onConfirm, onCancel }: ConfirmProps) {
   const dialog = useRef<HTMLDialogElement>(null);
   const id = useId();
   useEffect(() => dialog.current?.showModal(), []);
@@ -29,7 +31,7 @@ export function Confirm({ title, children, confirm, cancel = "Cancel", onConfirm
         <button class="button" type="button" onClick={onCancel}>
           {cancel}
         </button>
-        <button class="button danger" type="button" onClick={onConfirm}>
+        <button class={`button ${harmless ? "primary" : "danger"}`} type="button" onClick={onConfirm}>
           {confirm}
         </button>
       </div>

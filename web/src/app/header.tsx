@@ -41,10 +41,15 @@ export function Header() {
         <Place href="/trees" current={view === "trees" || view === "tree" || view === "edit"}>
           Task trees
         </Place>
-        {(view === "requests" || (fleets.value?.length ?? 0) > 0) && (
-          <Place href="/requests" current={view === "requests"}>
-            Requests
-          </Place>
+        {(view === "requests" || view === "fleet" || (fleets.value?.length ?? 0) > 0) && (
+          <>
+            <Place href="/fleet" current={view === "fleet"}>
+              Fleet
+            </Place>
+            <Place href="/requests" current={view === "requests"}>
+              Requests
+            </Place>
+          </>
         )}
       </nav>
       <Connection />

@@ -11,6 +11,7 @@ export type Route =
   | { view: "start"; tree: string | null }
   | { view: "requests" }
   | { view: "touch"; robot: string }
+  | { view: "fleet"; site: string | null }
   | { view: "settings" }
   | { view: "unknown"; path: string };
 
@@ -25,9 +26,11 @@ export function routeOf(address: string): Route {
   if (second === undefined) {
     if (first === "") return { view: "questions" };
     if (first === "runs" || first === "trees" || first === "requests" || first === "settings") return { view: first };
+    if (first === "fleet") return { view: first, site: null };
     if (first === "edit" || first === "start") return { view: first, tree: null };
   } else if (first === "runs") return { view: "run", run: second };
   else if (first === "trees") return { view: "tree", tree: second };
+  else if (first === "fleet") return { view: first, site: second };
   else if (first === "edit" || first === "start") return { view: first, tree: second };
   return { view: "unknown", path: address };
 }

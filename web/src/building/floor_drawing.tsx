@@ -30,7 +30,7 @@ function Drawn({ floor }: { floor: PlanFloor }) {
   const { walls, lanes, doors, places } = floor;
   return (
     <>
-      <path class="plan-lanes" d={lines(lanes)} />
+      <path class="plan-lanes" d={lines(lanes.map((each) => each.segment))} />
       <path class="plan-walls" d={lines(walls)} />
       <path class="plan-doors people" d={lines(doors.filter((each) => !each.opensItself).map((each) => each.segment))} />
       <path class="plan-doors itself" d={lines(doors.filter((each) => each.opensItself).map((each) => each.segment))} />

@@ -25,12 +25,19 @@ export interface Box {
   readonly top: number;
 }
 
+/** What robots drive from place to place of a floor, through a door or none. */
+export interface PlanLane {
+  readonly between: readonly [string, string];
+  readonly segment: Segment;
+  readonly door: PlanDoor | null;
+}
+
 export interface PlanFloor {
   readonly name: string;
   readonly height: number;
   readonly places: readonly PlanPlace[];
   readonly walls: readonly Segment[];
-  readonly lanes: readonly Segment[];
+  readonly lanes: readonly PlanLane[];
   readonly doors: readonly PlanDoor[];
   /** All that is drawn of it. */
   readonly box: Box;
@@ -78,10 +85,6 @@ function floorOf(name: string, floor: Setting["floors"][string]): PlanFloor {
     kind,
   }));
   const named = new Map(places.map((place) => [place.name, place]));
-  const drawnLanes = lanes.flatMap(({ between: [from, to] }): Segment[] => {
-    const [a, b] = [named.get(from), named.get(to)];
-    return a === undefined || b === undefined ? [] : [[a.x, a.y, b.x, b.y]];
-  });
   const doors = Object.entries(floor.doors ?? {}).map(
     ([called, { posts, opens }]): PlanDoor => ({
       name: called,
@@ -89,8 +92,29 @@ function floorOf(name: string, floor: Setting["floors"][string]): PlanFloor {
       opensItself: opens === "itself",
     }),
   );
+  const drawnLanes = lanes.flatMap(({ between }): PlanLane[] => {
+    const [a, b] = between.map((each) => named.get(each));
+    if (a === undefined || b === undefined) return [];
+    const segment = [a.x, a.y, b.x, b.y] as const;
+    return [{ between, segment, door: doors.find((door) => cross(segment, door.segment)) ?? null }];
+  });
   const box = around([...walls, ...doors.map((door) => door.segment)], places);
   return { name, height, places, walls, lanes: drawnLanes, doors, box };
+}
+
+/** Whether two segments have a point in common. */
+function cross(a: Segment, b: Segment): boolean {
+  const side = ([x0, y0, x1, y1]: Segment, x: number, y: number) => Math.sign((x1 - x0) * (y - y0) - (y1 - y0) * (x - x0));
+  const apart = (one: Segment, other: Segment) => side(one, other[0], other[1]) * side(one, other[2], other[3]) > 0;
+  return !apart(a, b) && !apart(b, a);
+}
+
+/** Where a place is that is called `FLOOR/PLACE`; null where the building has none. */
+export function placeOf(plan: Plan, name: string): (PlanPlace & { z: number; floor: string }) | null {
+  const slash = name.indexOf("/");
+  const floor = plan.floors.find((each) => each.name === name.slice(0, slash));
+  const place = floor?.places.find((each) => each.name === name.slice(slash + 1));
+  return floor === undefined || place === undefined ? null : { ...place, z: floor.height, floor: floor.name };
 }
 
 function around(segments: readonly Segment[], places: readonly PlanPlace[]): Box {

@@ -1,5 +1,5 @@
 // The building of a run: one floor at a time, the robots on it at the moment that is shown.
-import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { RunState } from "../run/fold";
 import type { Moment } from "../run/moment";
 import { createPoseSource, type PoseSource } from "../run/scene/pose_source";
@@ -9,10 +9,11 @@ import { FLOOR_PANEL, FloorTabs, floorTab } from "./floor_tabs";
 import { FloorDrawing, FloorLegend } from "./floor_drawing";
 import type { Rect } from "./labels";
 import { namesHidden, PlaceNames, useNames } from "./place_names";
-import type { Plan, PlanFloor } from "./plan";
+import type { Plan } from "./plan";
 import { RobotList } from "./robot_list";
 import { type Marks, RobotMarks } from "./robot_marks";
 import type { SeenRobot } from "./seen_robots";
+import { useFloor, useSteady } from "./use_floor";
 import { type Positions, useRobots } from "./use_robots";
 import { useSight, useSize } from "./use_sight";
 import { ViewButtons } from "./view_buttons";
@@ -90,27 +91,6 @@ export function PlanPanel({ plan, run, moment, state }: PlanPanelProps) {
       <RobotList seen={seen} onShow={show} />
     </section>
   );
-}
-
-/** The floor that is shown: what somebody has chosen, else that of who asks, else of the first robot that is known. */
-function useFloor(plan: Plan, seen: readonly SeenRobot[]): [PlanFloor, (floor: PlanFloor) => void] {
-  const [chosen, setChosen] = useState<PlanFloor | null>(null);
-  const known = seen.find(({ activity, floor }) => activity === "asking" && floor !== null) ?? seen.find(({ floor }) => floor !== null);
-  const first = plan.floors.find(({ name }) => name === known?.floor) ?? null;
-  useEffect(() => {
-    // Whoever looks at a floor is not to be taken to another one.
-    if (chosen === null && first !== null) setChosen(first);
-  }, [first]);
-  const shown = chosen ?? first ?? (plan.floors[0] as PlanFloor);
-  return [shown, useCallback((floor) => setChosen(floor), [])];
-}
-
-/** The same set as long as it has the same in it. */
-function useSteady(set: ReadonlySet<string>): ReadonlySet<string> {
-  const before = useRef(set);
-  const same = set.size === before.current.size && [...set].every((each) => before.current.has(each));
-  if (!same) before.current = set;
-  return before.current;
 }
 
 function stateSentence(source: PoseSource, moment: Moment, seen: readonly SeenRobot[]): string {

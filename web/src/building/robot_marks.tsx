@@ -7,6 +7,7 @@ import { type Named, placeLabels, type Rect } from "./labels";
 import type { Plan, PlanFloor } from "./plan";
 import type { SeenRobot } from "./seen_robots";
 import { drawnAt, type Sight, type Size } from "./sight";
+import { likelyEllipse } from "./likely_ellipse";
 import type { Standing } from "./standing";
 import type { Positions } from "./use_robots";
 import { floorShownAt } from "./whereabouts";
@@ -55,8 +56,8 @@ export function RobotMarks(props: RobotMarksProps) {
       <svg class="plan-robots-drawing" aria-hidden="true" ref={svg}>
         {robots.map((each) => (
           <g key={each.robot} class={`plan-robot robot-${stateOf(each)}`} data-robot={each.robot} data-floor={floor.name}>
+            <ellipse class="plan-unsure" />
             <line class="plan-way" />
-            {/* How sure it is of its pose belongs under its mark, in metres, as the mark's radius. */}
             <g class="plan-mark">
               <circle r={1} />
               <path d="M0.75 0L-0.35 0.5L-0.1 0L-0.35 -0.5Z" />
@@ -146,7 +147,8 @@ function drawMark(
 ): void {
   show(group, at !== null);
   if (at === null || standing === undefined) return;
-  const [way, mark] = group.children as unknown as [SVGLineElement, SVGGElement];
+  const [unsure, way, mark] = group.children as unknown as [SVGEllipseElement, SVGLineElement, SVGGElement];
+  drawUnsure(unsure, at, standing.covariance ?? null, sight.scale);
   const degrees = (-standing.yaw * 180) / Math.PI;
   const turned = `rotate(${degrees.toFixed(1)}) scale(${radius.toFixed(2)})`;
   put(mark, "transform", `translate(${at.x.toFixed(1)} ${at.y.toFixed(1)}) ${turned}`);
@@ -155,6 +157,17 @@ function drawMark(
   if (there === null) return;
   const ends = { x1: at.x, y1: at.y, x2: there.x, y2: there.y };
   for (const [end, value] of Object.entries(ends)) put(way, end, value.toFixed(1));
+}
+
+/** Within it the robot is with a chance of 95 %, as it says itself. */
+function drawUnsure(ellipse: SVGEllipseElement, at: { x: number; y: number }, covariance: readonly number[] | null, scale: number): void {
+  show(ellipse, covariance !== null);
+  if (covariance === null) return;
+  const { rx, ry, degrees } = likelyEllipse(covariance);
+  put(ellipse, "rx", (rx * scale).toFixed(1));
+  put(ellipse, "ry", (ry * scale).toFixed(1));
+  // Upwards is up in the plan, and down in the drawing.
+  put(ellipse, "transform", `translate(${at.x.toFixed(1)} ${at.y.toFixed(1)}) rotate(${(-degrees).toFixed(1)})`);
 }
 
 function drawGoal(mark: SVGCircleElement, robots: readonly AtWork[], sight: Sight): void {

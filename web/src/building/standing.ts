@@ -20,6 +20,8 @@ export interface Standing {
   readonly moving: boolean;
   /** How long ago it was seen there, s; null while that is now. */
   readonly seen_s: number | null;
+  /** How sure it is of x and y: variances and covariance xx, xy, yy, square metres; unset where nobody tells. */
+  readonly covariance?: readonly number[] | null;
 }
 
 /** How far what is shown is behind: `time` is the run's clock that is shown, `silent_s` counts since the last frame. */
@@ -72,7 +74,8 @@ function yawOf(pose: ArrayLike<number>): number {
   return Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
 }
 
-/** "12 s", "3 min" */
+/** "12 s", "3 min", "5 h" */
 export function howLong(seconds: number): string {
-  return seconds < 120 ? `${Math.floor(seconds)} s` : `${Math.floor(seconds / 60)} min`;
+  if (seconds < 120) return `${Math.floor(seconds)} s`;
+  return seconds < 7200 ? `${Math.floor(seconds / 60)} min` : `${Math.floor(seconds / 3600)} h`;
 }

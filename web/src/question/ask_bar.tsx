@@ -1,5 +1,6 @@
 // On every other view: that a robot asks, and the way to its question.
 import { route } from "../app/router";
+import { fleetAt } from "../requests/fleets";
 import { faultInWords, robotName } from "./fault_words";
 import { shown } from "./queue";
 import { questions } from "../state/questions";
@@ -11,6 +12,9 @@ export function AskBar() {
   if (question === null || place.view === "questions") return null;
   // The run's own view shows its question itself.
   if (place.view === "run" && questions.value.every((each) => each.run === place.run)) return null;
+  // So does that of the fleet whose robots alone ask.
+  const fleet = place.view === "fleet" ? fleetAt(place.site) : null;
+  if (fleet && questions.value.every((each) => fleet.robots.some(({ robot }) => robot === each.robot))) return null;
   const others = questions.value.length - 1;
   return (
     <aside class="ask-bar" aria-label="A robot asks">

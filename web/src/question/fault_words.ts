@@ -19,6 +19,8 @@ const SENTENCES: Readonly<Record<string, (part: string) => string>> = {
   item_missing: () => "The robot is to hand over something that it was not given.",
   low_battery: () => "The robot has little left in its battery.",
   nobody_answers: () => "The robot has told a message, and nobody has said that it was heard.",
+  person_not_there: () => "The robot has come to meet somebody, and sees nobody.",
+  fell_behind: () => "Whom the robot leads does not come after it.",
 };
 
 /** Of robots that drive, who see with their lasers. */

@@ -17,6 +17,7 @@ const PROMISES: Readonly<Record<Help, (part: string) => string>> = {
   put_in: () => "would put something into its basket",
   take_out: () => "would take something out of its basket",
   charge: () => "would plug it in",
+  send_person: () => "would tell who is to follow it to come",
 };
 
 const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
@@ -29,6 +30,7 @@ const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
   put_in: () => "The robot waits until it feels that in its basket.",
   take_out: () => "The robot waits until it feels that its basket is lighter.",
   charge: () => "The robot waits until it feels current.",
+  send_person: () => "The robot waits until it sees them beside it.",
 };
 
 /** A base sees with its laser, and has no arm. */

@@ -9,6 +9,11 @@ const AGAIN_MS = 15_000;
 /** Null until they were read. */
 export const fleets = signal<readonly SiteView[] | null>(null);
 
+/** The site of a fleet; without its id that which comes first. */
+export function fleetAt(site: string | null): SiteView | null {
+  return fleets.value?.find(({ id }) => site === null || id === site) ?? null;
+}
+
 export async function readFleets(): Promise<void> {
   const sites = await rest.sites();
   fleets.value = sites.filter(({ fleet }) => fleet !== null);

@@ -1,5 +1,5 @@
 // How the console speaks of requests: what is wanted, how far it is, and when it is done.
-import { plain } from "../tree/words";
+import { robotName } from "../question/fault_words";
 import type { RequestStatus, RequestView } from "../wire/types";
 
 export const STATUS_WORDS: Readonly<Record<RequestStatus, string>> = {
@@ -51,7 +51,7 @@ export function wanted({ what }: RequestView, named = (place: string) => place):
 export function expectation(request: RequestView, now: number | undefined): string {
   const { expected } = request;
   if (isOver(request) || expected === null || now === undefined) return "";
-  return `${plain(expected.robot)}, done ${within(expected.done_s - now)}`;
+  return `${robotName(expected.robot)}, done ${within(expected.done_s - now)}`;
 }
 
 /** "in less than a minute", "in about 4 minutes" */

@@ -48,7 +48,7 @@ function SiteChoice({ sites, site }: { sites: readonly SiteView[]; site: SiteVie
   );
 }
 
-function NobodyTakesAny() {
+export function NobodyTakesAny() {
   return (
     <div class="panel empty">
       <h2>No robots take requests</h2>
@@ -83,9 +83,9 @@ function OfSite({ site }: { site: SiteView }) {
         <>
           <h2>Open</h2>
           {open.length === 0 && <p class="quiet">Nothing is asked for just now.</p>}
-          <List label="Open requests" requests={open} now={fleet?.now_s} changed={again} />
+          <RequestList label="Open requests" requests={open} now={fleet?.now_s} changed={again} />
           {over.length > 0 && <h2>Over</h2>}
-          <List label="Requests that are over" requests={over} now={fleet?.now_s} changed={again} />
+          <RequestList label="Requests that are over" requests={over} now={fleet?.now_s} changed={again} />
         </>
       )}
     </>
@@ -96,10 +96,11 @@ interface ListProps {
   label: string;
   requests: readonly RequestView[];
   now: number | undefined;
-  changed: () => void;
+  /** Something was cancelled; unset where nothing can be, as of the past. */
+  changed?: () => void;
 }
 
-function List({ label, requests, now, changed }: ListProps) {
+export function RequestList({ label, requests, now, changed }: ListProps) {
   if (requests.length === 0) return null;
   return (
     <ul class="requests" aria-label={label}>
@@ -110,7 +111,7 @@ function List({ label, requests, now, changed }: ListProps) {
   );
 }
 
-function Row({ request, now, changed }: { request: RequestView; now: number | undefined; changed: () => void }) {
+function Row({ request, now, changed }: { request: RequestView; now: number | undefined; changed: (() => void) | undefined }) {
   const [failure, setFailure] = useState("");
   const cancel = () =>
     rest.cancelRequest(request.site, request.name).then(changed, (error: Error) => setFailure(error.message));
@@ -131,7 +132,7 @@ function Row({ request, now, changed }: { request: RequestView; now: number | un
           </span>
         )}
       </span>
-      {!isOver(request) && status !== "returning" && may("helper") && (
+      {changed !== undefined && !isOver(request) && status !== "returning" && may("helper") && (
         <button class="button" type="button" aria-label={`Cancel: ${wanted(request)}`} onClick={() => void cancel()}>
           Cancel
         </button>

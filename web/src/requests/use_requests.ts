@@ -3,7 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import * as rest from "../wire/rest";
 import type { FleetView, RequestView } from "../wire/types";
 
-const AGAIN_MS = 2000;
+const AGAIN_MS = 2_000;
 
 export interface Requests {
   /** Null until they were read. */
@@ -15,22 +15,24 @@ export interface Requests {
 const NOTHING: Requests = { requests: null, fleet: null, failure: "" };
 
 /** Also how to read them at once. */
-export function useRequests(site: string): Requests & { again: () => void } {
+export function useRequests(site: string, againMs = AGAIN_MS): Requests & { again: () => void } {
   const [found, setFound] = useState<Requests>(NOTHING);
   const [asked, setAsked] = useState(0);
   useEffect(() => {
     let current = true;
-    const read = () =>
-      Promise.all([rest.requests(site), rest.fleet(site)]).then(
+    let timer = 0;
+    const read = async () => {
+      await Promise.all([rest.requests(site), rest.fleet(site)]).then(
         ([requests, fleet]) => current && setFound({ requests, fleet, failure: "" }),
         (error: Error) => current && setFound((before) => ({ ...before, failure: error.message })),
       );
+      if (current) timer = window.setTimeout(() => void read(), againMs);
+    };
     void read();
-    const timer = setInterval(() => void read(), AGAIN_MS);
     return () => {
       current = false;
-      clearInterval(timer);
+      window.clearTimeout(timer);
     };
-  }, [site, asked]);
+  }, [site, asked, againMs]);
   return { ...found, again: () => setAsked((count) => count + 1) };
 }

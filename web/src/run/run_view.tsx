@@ -23,6 +23,7 @@ import { Tabs, useNarrow } from "./tabs";
 import { lanesOf, type TimelineItem } from "./timeline/lanes";
 import { Timeline } from "./timeline/timeline";
 import { Transcript } from "./transcript";
+import { usePlaying } from "./use_playing";
 import "./run.css";
 
 const ScenePanel = later(() => import("./scene/scene_panel").then((module) => module.ScenePanel));
@@ -53,7 +54,7 @@ function useFeed(run: string): RunFeed | null {
 function Followed({ feed }: { feed: RunFeed }) {
   const { history, moment } = feed;
   const version = feed.version.value;
-  usePlaying(feed);
+  usePlaying(feed.moment);
   // Time passes all along; what is drawn changes with the events alone.
   const count = useComputed(() => {
     if (moment.newest.value) return Infinity;
@@ -286,21 +287,4 @@ function TimelinePanel({ feed, version, onSelect, onGoTo }: TimelinePanelProps) 
       <Timeline lanes={lanes} end={end} moment={moment} onChoose={choose} />
     </div>
   );
-}
-
-/** While the past is played, time passes with the frames that are drawn. */
-function usePlaying({ moment }: RunFeed): void {
-  const playing = moment.playing.value;
-  useEffect(() => {
-    if (!playing) return;
-    let before = performance.now();
-    let frame = 0;
-    const pass = (now: number) => {
-      moment.advance((now - before) / 1000);
-      before = now;
-      frame = requestAnimationFrame(pass);
-    };
-    frame = requestAnimationFrame(pass);
-    return () => cancelAnimationFrame(frame);
-  }, [moment, playing]);
 }

@@ -55,12 +55,13 @@ export function moment(then: number): string {
   return MOMENT.format(then);
 }
 
-/** A time of the run's clock as people read it: 7.4 s, 2:07.4. */
+/** A time of a clock as people read it: 7.4 s, 2:07.4, 1:02:07.4. */
 export function clock(time: number): string {
   const tenths = Math.round(time * 10);
   if (tenths < 600) return `${(tenths / 10).toFixed(1)} s`;
-  const seconds = tenths % 600;
-  return `${Math.floor(tenths / 600)}:${(seconds / 10).toFixed(1).padStart(4, "0")}`;
+  const seconds = ((tenths % 600) / 10).toFixed(1).padStart(4, "0");
+  const [hours, minutes] = [Math.floor(tenths / 36_000), Math.floor(tenths / 600) % 60];
+  return hours === 0 ? `${minutes}:${seconds}` : `${hours}:${String(minutes).padStart(2, "0")}:${seconds}`;
 }
 
 /** What the service says, as a sentence. */

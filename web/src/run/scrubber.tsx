@@ -6,6 +6,8 @@ import "./scrubber.css";
 const STEP_S = 0.1;
 
 interface ScrubberProps {
+  /** Whose moment it is. */
+  of?: string;
   moment: Moment;
   /** Whether the run goes on. */
   going: boolean;
@@ -13,7 +15,7 @@ interface ScrubberProps {
   onStep: (direction: -1 | 1) => void;
 }
 
-export function Scrubber({ moment, going, onStep }: ScrubberProps) {
+export function Scrubber({ of = "the run", moment, going, onStep }: ScrubberProps) {
   const time = moment.time.value;
   const end = moment.end.value;
   const newest = moment.newest.value;
@@ -40,7 +42,7 @@ export function Scrubber({ moment, going, onStep }: ScrubberProps) {
       </div>
       <input
         type="range"
-        aria-label="Moment of the run"
+        aria-label={`Moment of ${of}`}
         aria-valuetext={`${time.toFixed(1)} of ${end.toFixed(1)} seconds`}
         min={0}
         max={last}

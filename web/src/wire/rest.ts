@@ -3,6 +3,7 @@ import type {
   Answered,
   AskedRobotView,
   DialogueView,
+  Event,
   FleetView,
   Intervention,
   Layout,
@@ -23,6 +24,7 @@ import type {
   DocumentCheck,
   DocumentSummary,
   DocumentView,
+  WayFoundInput,
   WorldView,
 } from "./types";
 import type { Told } from "./told";
@@ -169,12 +171,33 @@ const atSite = (site: string, name = "") =>
 export const requests = (site: string) => call<RequestView[]>("GET", atSite(site));
 export const makeRequest = (site: string, request: object) => call<RequestView>("POST", atSite(site), request);
 export const cancelRequest = (site: string, name: string) => call<void>("DELETE", atSite(site, name));
+const ofFleet = (site: string, what = "") => `/api/sites/${segment(site)}/fleet${what}`;
+const ofRobot = (site: string, robot: string, what: string) => ofFleet(site, `/robots/${segment(robot)}/${what}`);
+export const takeRobotOut = (site: string, robot: string, reason: string) =>
+  call<void>("POST", ofRobot(site, robot, "out_of_service"), { reason });
+export const putRobotBack = (site: string, robot: string) => call<void>("POST", ofRobot(site, robot, "back_in_service"));
+export const sendRobot = (site: string, robot: string, place: string) =>
+  call<void>("POST", ofRobot(site, robot, "go"), { place });
+/** What somebody tells of a way; an event of robots is called alike. */
+export type WayTold = Pick<WayFoundInput, "finding"> & Partial<WayFoundInput>;
+export const tellOfWay = (site: string, way: WayTold) => call<void>("POST", ofFleet(site, "/ways"), way);
+/** What became of a site after `after`, in order. */
+export async function siteEvents(id: string, after = 0): Promise<Event[]> {
+  const all: Event[] = [];
+  for (;;) {
+    const some = await call<Event[]>("GET", `/api/sites/${segment(id)}/events?after=${after}&limit=${EVENTS_AT_ONCE}`);
+    all.push(...some);
+    const last = some.at(-1);
+    if (last === undefined) return all;
+    after = last.seq;
+  }
+}
 /** What somebody asks for in words, at the touch screen of a robot if there is one, at HH:MM. */
 export const understandRequest = (site: string, words: string, robot: string | null, clock: string) =>
   call<UnderstoodView>("POST", `/api/requests/understand?site=${segment(site)}`, { words, robot, clock });
 export const askedRobot = (site: string, robot: string) =>
-  call<AskedRobotView>("GET", `/api/sites/${segment(site)}/fleet/robots/${segment(robot)}/asking`);
-export const fleet = (site: string) => call<FleetView>("GET", `/api/sites/${segment(site)}/fleet`);
+  call<AskedRobotView>("GET", ofRobot(site, robot, "asking"));
+export const fleet = (site: string) => call<FleetView>("GET", ofFleet(site));
 export const sites = () => call<SiteView[]>("GET", "/api/sites");
 export const worlds = () => call<WorldView[]>("GET", "/api/worlds");
 export const scenarios = () => call<ScenarioSummary[]>("GET", "/api/scenarios");

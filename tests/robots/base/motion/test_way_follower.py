@@ -48,6 +48,17 @@ def test_in_free_space_it_arrives_and_does_not_overshoot(
 
 
 @LIMITS
+@pytest.mark.parametrize("speed", [0.3, 0.6, 1.0])
+@pytest.mark.parametrize("corner_m", [0.4, 0.8, 1.14])
+def test_who_cuts_a_corner_gets_to_the_end_at_any_speed(
+    limits: DriveLimits, speed: float, corner_m: float
+) -> None:
+    way = [(0.0, corner_m), (8.0, corner_m)]
+    drive = Drive(Floor(), limits, 0.25, BasePose(0.03, 0.0, 1.35), way, speed=speed)
+    assert drive.run().end == "arrived"
+
+
+@LIMITS
 def test_before_a_wall_across_its_way_it_stops(limits: DriveLimits) -> None:
     done = driven(Floor([*CORRIDOR, (4.0, -1.25, 4.0, 1.25)]), limits)
     assert done.end == "barred"

@@ -75,8 +75,9 @@ const DONE: Readonly<Record<Intervention["act"], (object: string) => string>> = 
   put_in: () => "Something is put into the robot’s basket.",
   take_out: () => "Something is taken out of the robot’s basket.",
   charge: () => "The robot is plugged in.",
-  bar: () => "A way is barred.",
-  clear: () => "A way is free again.",
+  bar: () => "A way of the building is barred.",
+  clear: () => "A way of the building is cleared.",
+  send_person: () => "Whom the robot escorts is told to come.",
 };
 
 /** One sentence on what was done. */

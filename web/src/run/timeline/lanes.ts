@@ -156,11 +156,16 @@ function closeDialogue(open: Map<string, Growing>, event: DialogueClosed): void 
   item.title += `, ${plain(event.reason)}`;
 }
 
+/** From so many seconds on people count in minutes and hours. */
+const LEAST_ROUND_S = 10;
+const ROUND_S = [10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600, 7200, 14_400, 28_800, 86_400];
+
 /** Times for the axis, so far apart that their words do not touch. */
 export function ticksOf(from: number, to: number, atMost: number): number[] {
   const least = (to - from) / Math.max(atMost, 1);
   const magnitude = 10 ** Math.floor(Math.log10(Math.max(least, 0.01)));
-  const every = ([1, 2, 5, 10].find((factor) => factor * magnitude >= least) ?? 10) * magnitude;
+  const decimal = ([1, 2, 5, 10].find((factor) => factor * magnitude >= least) ?? 10) * magnitude;
+  const every = decimal < LEAST_ROUND_S ? decimal : (ROUND_S.find((each) => each >= least) ?? decimal);
   const ticks: number[] = [];
   for (let index = Math.ceil(from / every); index * every <= to; index++) ticks.push(index * every);
   return ticks;

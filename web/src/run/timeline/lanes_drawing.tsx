@@ -1,4 +1,5 @@
 // The lanes of a timeline as a drawing over the run's clock.
+import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { Moment } from "../moment";
 import { shortened, withoutRun } from "../../tree/words";
@@ -9,6 +10,7 @@ import { AXIS_PX, usePointer, useWheel } from "./pointer";
 import { type Scale, scaleOf, type Span } from "./span";
 import { useWalk } from "./walk";
 
+const LABEL = "Lanes; the arrow keys go from one thing to the next, Enter goes to its moment";
 const LABELS_PX = 96;
 const NAME_CHARACTERS = 12;
 const NARROW_PX = 560;
@@ -17,6 +19,9 @@ const LANE_NARROW_PX = 44;
 const TICK_PX = 80;
 
 interface LanesProps {
+  label?: string;
+  /** What is drawn over the lanes; `middle` is that of a lane, in px from the top. */
+  overlay?: (scale: Scale, middle: (lane: number) => number, height: number) => ComponentChildren;
   lanes: readonly Lane[];
   moment: Moment;
   onChoose: (item: TimelineItem) => void;
@@ -27,7 +32,7 @@ interface LanesProps {
 }
 
 export function Lanes(props: LanesProps) {
-  const { lanes, span, whole, setSpan, zoom, moment, onChoose } = props;
+  const { lanes, span, whole, setSpan, zoom, moment, onChoose, label = LABEL, overlay } = props;
   const frame = useRef<HTMLDivElement>(null);
   const width = useWidth(frame);
   const narrow = width < NARROW_PX;
@@ -43,7 +48,7 @@ export function Lanes(props: LanesProps) {
         width={width}
         height={height}
         role="group"
-        aria-label="Lanes; the arrow keys go from one thing to the next, Enter goes to its moment"
+        aria-label={label}
         onKeyDown={walk.onKeyDown}
         {...pointer}
       >
@@ -60,6 +65,7 @@ export function Lanes(props: LanesProps) {
             </g>
           </g>
         ))}
+        {overlay?.(scale, (lane) => AXIS_PX + (lane + 0.5) * lanePx + (narrow ? 7 : 0), height)}
         <Playhead scale={scale} moment={moment} height={height} />
       </svg>
     </div>

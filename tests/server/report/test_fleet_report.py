@@ -12,7 +12,6 @@ from mend.server.cli.report import report
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry
 from mend.server.journal.sqlite import SqliteJournal
-from mend.server.report.fleet_questions import questions_of
 
 COMMON: dict[str, Any] = {"wall_time": datetime(2026, 1, 2, tzinfo=UTC), "site": UUID(int=9)}
 LEG: dict[str, Any] = {"robot": "r0", "number": 1, "booking": "tea", "action": "visit"}
@@ -48,41 +47,16 @@ async def test_requests_and_busy_time_are_counted(tmp_path: Path) -> None:
     kinds = (tmp_path / "csv" / "requests.csv").read_text(encoding="utf-8").splitlines()
     assert kinds[1] == "go to room,1,0,1,1,0,0"
     robots = (tmp_path / "csv" / "robots.csv").read_text(encoding="utf-8").splitlines()
-    assert robots[1] == "r0,1,1,1.0,50 %"
+    assert robots[1] == "r0,1,1,1,50"
     assert "go to room" in (tmp_path / "day.html").read_text(encoding="utf-8")
 
 
-def test_only_the_dialogues_of_the_sites_own_runs_are_counted() -> None:
-    def dialogue(number: int) -> list[ev.Event]:
-        more: dict[str, Any] = {"wall_time": COMMON["wall_time"], "run": UUID(int=number)}
-        about: dict[str, Any] = {
-            "node": "/",
-            "name": "go",
-            "dialogue": UUID(int=10 + number),
-            "robot": "r0",
-            "issue": "blocked",
-            "object": None,
-        }
-        begun = ev.RunStarted(
-            time=0.0,
-            tree_name="go",
-            tree={},
-            scene={},
-            world="building",
-            robots=["r0"],
-            seed=0,
-            speed=1.0,
-            scenario=None,
-            options={},
-            site=UUID(int=number),
-            **more,
-        )
-        opened = ev.DialogueOpened(time=5.0, **about, **more)
-        resolved = ev.Resolved(time=12.5, resolution="robot_retry", helped=True, **about, **more)
-        return [begun, opened, resolved]
-
-    table = questions_of(UUID(int=9), [*dialogue(8), *dialogue(9)])
-    assert table.rows == [("blocked", "1", "0", "1", "1", "7.5")]
+async def test_a_span_tells_only_of_what_was_in_it(tmp_path: Path) -> None:
+    path = await journal_of(tmp_path / "day.sqlite", DAY)
+    report(path, tmp_path / "day.html", csv=tmp_path / "csv", begin="100", until="200")
+    assert (tmp_path / "csv" / "requests.csv").read_text(encoding="utf-8").count("\n") == 1
+    with pytest.raises(CommandLineError, match="no events of this fleet in that time"):
+        report(path, tmp_path / "day.html", begin="2027-01-01")
 
 
 async def test_a_journal_without_a_fleet_gets_a_sentence(tmp_path: Path) -> None:

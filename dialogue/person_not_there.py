@@ -1,0 +1,24 @@
+"""The script for `person_not_there`: have somebody come who is to be escorted."""
+
+from mend.dialogue.offer import Offer, offer_script
+from mend.dialogue.script import Expectation, Help
+from mend.tasks.resolution import Resolution
+
+script = offer_script(
+    Offer(
+        question="I have come to {place} for {person}.{why} Will you tell {person} to come to me?",
+        failed="I have now come {times} for {person}, who was not there.",
+        yes_effect="You tell {person} to come; I go on once I see {person} beside me ({attempt}).",
+        help=Help.SEND_PERSON,
+        request="Please tell {person} to come to me. I wait until I see {person} beside me.",
+        resolution=Resolution.ROBOT_FINISH,
+        thanks="Thank you. I see {person} beside me.",
+        unchanged="I see {person} beside me.",
+        not_seen="I do not see {person} beside me yet. Is {person} still coming?",
+        given_up="I still do not see {person}.",
+        put_right={Expectation.ACCOMPANIED: Resolution.ROBOT_FINISH},
+        denied=frozenset({Expectation.ACCOMPANIED}),
+        placeable=False,
+        leaves="go on without {person}",
+    )
+)

@@ -1,0 +1,103 @@
+"""Ways of robots that carry out no leg: somebody has sent them, or they make way for another."""
+
+import asyncio
+import logging
+from collections.abc import Callable, Iterable, Mapping
+from uuid import UUID, uuid4
+
+from mend.errors import ConflictError, RefusalError
+from mend.fleet.dispatch.dispatcher import Dispatcher
+from mend.server.fleets.fleet_record import Errand
+from mend.server.fleets.leg_task import way_of, way_request
+from mend.server.fleets.place_names import PlaceNames
+from mend.server.fleets.runs import Runs
+from mend.server.runtime.views import RunStatus
+from mend.server.sites.requests import FleetOptions
+from mend.server.sites.site import Site
+
+log = logging.getLogger(__name__)
+_LONGEST = 500
+
+
+class Errands:
+    """At most one of each robot, in a run of its own; meanwhile no leg of that robot begins."""
+
+    def __init__(
+        self,
+        site: Site,
+        dispatcher: Dispatcher,
+        places: PlaceNames,
+        options: Callable[[], FleetOptions],
+        runs: Runs,
+        going: Iterable[Errand],
+    ) -> None:
+        """`going`: those that were under way when the service stopped. `options`: as they are by
+        then when an errand begins.
+        """
+        self._site, self._dispatcher, self._places = site, dispatcher, places
+        self._options, self._runs = options, runs
+        self._going = {each.robot: each for each in going}
+        self._unwanted: set[UUID] = set()
+        """The runs that were broken off before they had begun."""
+
+    @property
+    def going(self) -> Mapping[str, Errand]:
+        """Those under way, by robot."""
+        return self._going
+
+    def require_free(self, robot: str) -> None:
+        """Raises `ConflictError` where a robot cannot be sent anywhere now."""
+        leg = next((e for e in self._dispatcher.legs_under_way() if e.robot == robot), None)
+        if leg is not None:
+            raise ConflictError(
+                f"robot '{robot}' is at work for '{leg.booking}' at {leg.place}: send it once that "
+                "is done, or take it out of service first"
+            )
+        if robot in self._going:
+            raise ConflictError(f"robot '{robot}' is on its way to {self._going[robot].place}")
+        if not self._site.is_connected(robot):
+            raise ConflictError(f"robot '{robot}' is not connected")
+        if not self._site.rests(robot):
+            run = self._site.run_of(robot)
+            busy = "has not come to rest yet" if run is None else f"is busy with run {run}"
+            raise ConflictError(f"robot '{robot}' {busy}")
+
+    def add(self, robot: str, place: str) -> Errand:
+        """One that is to be carried out, to a place as `FLOOR/PLACE`."""
+        errand = self._going[robot] = Errand(robot=robot, place=place, run=uuid4())
+        return errand
+
+    async def carry_out(self, errand: Errand) -> str | None:
+        """Have its robot go there; returns why it has not come there, if so.
+
+        Raises a `RefusalError` where it cannot be begun.
+        """
+        request = way_request(self._site.id, errand.robot, self._options())
+        tree = way_of(self._places.in_scene(errand.place))
+        await self._runs.start_run_of(errand.run, request, tree)
+        if errand.run in self._unwanted:
+            await self.break_off(errand)
+        view = await self._runs.wait_for_end(errand.run)
+        if not view.status.ended:
+            # The service stops, and goes on with it at its next start.
+            await asyncio.Event().wait()
+        if view.result is None:
+            return str(view.status)
+        # A leaf that somebody had left out counts as done for the run, but nobody has done it.
+        came = view.status is RunStatus.FINISHED and not view.result.missing
+        return None if came else view.result.reason[:_LONGEST]
+
+    async def break_off(self, errand: Errand) -> None:
+        """It is not wanted any more."""
+        try:
+            await self._runs.abort(errand.run)
+        except RefusalError as error:
+            log.info("the errand of %s was over, or not begun: %s", errand.robot, error)
+            self._unwanted.add(errand.run)
+
+    def end(self, errand: Errand, at: str) -> None:
+        """Its robot is at a place, which plans know from now on."""
+        del self._going[errand.robot]
+        self._unwanted.discard(errand.run)
+        if self._dispatcher.fleet.robots[errand.robot].works:
+            self._dispatcher.robot_moved(errand.robot, at, self._dispatcher.now_s)

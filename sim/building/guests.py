@@ -1,0 +1,395 @@
+"""People whom robots escort: they wait where they are met, follow, and now and then dawdle."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mend.documents.strict_model import StrictModel
+from mend.sim.building.building_robot import PERIOD_S, BuildingRobot
+from mend.sim.building.bystander import RADIUS_M
+from mend.sim.building.door import WorldDoor, open_doors
+from mend.sim.building.draws import read_draws, written_draws
+from mend.sim.building.floor_pose import FloorPose
+from mend.sim.building.social_force import KEEP_M, ahead, free_step, pushed
+
+Matrix = NDArray[np.float64]
+Point = tuple[float, float]
+
+_SPEEDS_M_S = (0.7, 1.3)
+_LATE = 0.3
+_LATE_S = (5.0, 60.0)
+"""So often who is to be met comes only so long after the robot."""
+_AT_PLACE_M = 3.0
+_THINKS_EVERY_S = 10.0
+_DAWDLES_S = (5.0, 60.0)
+_CRUMB_M = 0.25
+_PASSED_M = 0.4
+_FOLLOWS_M = 1.1
+"""Who follows stays so far behind, along the way."""
+_SLOWS_OVER_M = 0.8
+_STILL_M_S = 0.08
+_LEAVES_S = 600.0
+"""Whom nobody leads any more goes their own way after so long."""
+_FROM_STOP_M = 0.33
+_ASIDE_M = 0.15
+"""In a cabin whose middle a robot leaves by less there is no room for anybody else."""
+_NEAR_STOP_M = 1.6
+_IN_CABIN_KEEP_M = 0.02
+
+
+class GuestSnapshot(StrictModel):
+    """A guest as they are kept; see `Guest`. Poses are floor, x, y."""
+
+    person: str
+    place: str
+    at: tuple[str, float, float] | None
+    speed_m_s: float
+    late_s: float | None
+    comes_s: float | None
+    led: bool
+    velocity: tuple[float, float]
+    trail: list[tuple[float, float]]
+    trail_floor: str
+    paused_until_s: float
+    thinks_s: float
+    left_s: float | None
+
+
+@dataclass(slots=True)
+class Guest:
+    """Who is to be met at a `place`, and led from there.
+
+    `where`: None until they have come, `late_s` after the robot (None: never), at `comes_s`.
+    `trail`: where the robot has been that they follow, and they have not, on `trail_floor`. They
+    stand until `paused_until_s`. `left_s`: since when nobody leads them.
+    """
+
+    person: str
+    place: str
+    speed_m_s: float
+    late_s: float | None
+    where: FloorPose | None = None
+    comes_s: float | None = None
+    led: bool = False
+    velocity: Point = (0.0, 0.0)
+    trail: list[Point] = field(default_factory=list)
+    trail_floor: str = ""
+    paused_until_s: float = 0.0
+    thinks_s: float = 0.0
+    left_s: float | None = None
+
+    radius_m = RADIUS_M
+
+    @property
+    def at(self) -> FloorPose:
+        assert self.where is not None, "they have come"
+        return self.where
+
+    @property
+    def moving(self) -> bool:
+        return math.hypot(*self.velocity) > _STILL_M_S
+
+    def ride(self, room: str) -> None:
+        self.where = replace(self.at, floor=room)
+
+    def get_out_at(self, floor: str, shift: tuple[float, float]) -> None:
+        at = self.at
+        self.where = FloorPose(floor, at.x + shift[0], at.y + shift[1])
+
+    def way_m(self, robot: FloorPose) -> float:
+        """How far it is along the trail to the robot."""
+        points = [(self.at.x, self.at.y), *self.trail, (robot.x, robot.y)]
+        return sum(math.dist(a, b) for a, b in pairwise(points))
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What people may ask of the building they are in.
+
+    `segments`: what nobody walks through on a floor; `people`: who else is there. `room_beside`: a
+    free place near a point, if any; `stop_around`: the middle of the cabin that somebody is in.
+    """
+
+    segments: Callable[[str], Matrix]
+    people: Callable[[str, Guest], Iterable[FloorPose]]
+    robots: Sequence[BuildingRobot]
+    room_beside: Callable[[FloorPose], FloorPose | None]
+    stop_around: Callable[[Guest | BuildingRobot], Point | None]
+    doors: Sequence[WorldDoor]
+
+
+class Guests:
+    """All whom robots, by their numbers, are to meet or lead; drawn by a generator of their own."""
+
+    def __init__(
+        self, no_shows: float, dawdling: float, places: Mapping[str, FloorPose], seed: int
+    ) -> None:
+        """`places`: where people are met, by the names that robots know."""
+        self._no_shows, self._dawdling = no_shows, dawdling
+        self._places = places
+        self._rng = np.random.default_rng([seed, 0xE5C0])
+        self.of_robots: dict[int, Guest] = {}
+
+    @property
+    def there(self) -> dict[int, Guest]:
+        """Those who have come."""
+        return {n: each for n, each in self.of_robots.items() if each.where is not None}
+
+    # --- What robots want -----------------------------------------------------------------------
+
+    def expect(self, robot: int, person: str, place: str) -> None:
+        """A robot comes to meet somebody, who hears of it."""
+        known = self.of_robots.get(robot)
+        if known is not None and self._waits(known, person, place):
+            known.left_s = None
+            return
+        absent, late, late_s, speed = self._rng.random(4)
+        guest = Guest(person, place, _between(_SPEEDS_M_S, speed), 0.0)
+        if absent < self._no_shows:
+            guest.late_s = None
+        elif late < _LATE:
+            guest.late_s = _between(_LATE_S, late_s)
+        self.of_robots[robot] = guest
+
+    def _waits(self, guest: Guest, person: str, place: str) -> bool:
+        """Whether they wait there for a robot already, and were not led away since."""
+        if (guest.person, guest.place) != (person, place):
+            return False
+        return guest.where is None or _is_at(guest.at, self._places[place])
+
+    def lead(self, robot: int, person: str) -> None:
+        """A robot has somebody follow whom it has met."""
+        guest = self.of_robots.get(robot)
+        if guest is not None and guest.person == person:
+            if not guest.led:
+                guest.trail.clear()
+            guest.led, guest.left_s = True, None
+
+    def leave(self, robot: int, time_s: float) -> None:
+        """A robot leads nobody any more."""
+        guest = self.of_robots.get(robot)
+        if guest is not None and guest.left_s is None:
+            guest.led, guest.left_s = False, time_s
+
+    def send(self, robot: int, time_s: float, near: FloorPose, around: Surroundings) -> str:
+        """Somebody tells a robot's guest to come; returns why they cannot, or nothing.
+
+        Who is on another floor takes the elevator alone, and is met near its door again.
+        """
+        guest = self.of_robots[robot]
+        if guest.late_s is None:
+            return f"nobody here is called {guest.person}"
+        guest.paused_until_s, guest.thinks_s = time_s, time_s + _THINKS_EVERY_S
+        if guest.where is None:
+            guest.comes_s = time_s
+        elif guest.at.floor != near.floor:
+            return _ride_alone(guest, near, around)
+        return ""
+
+    # --- What they do ---------------------------------------------------------------------------
+
+    def walk(self, time_s: float, robots: Sequence[BuildingRobot], around: Surroundings) -> None:
+        """One cycle."""
+        gone = [n for n, each in self.of_robots.items() if _has_gone(each, time_s)]
+        for number in gone:
+            del self.of_robots[number]
+        for number, guest in self.of_robots.items():
+            robot = robots[number]
+            if guest.where is None:
+                self._come(guest, robot, time_s, around)
+            elif not guest.at.floor.startswith("/"):
+                self._follow(guest, robot, time_s, around)
+
+    def _come(
+        self, guest: Guest, robot: BuildingRobot, time_s: float, around: Surroundings
+    ) -> None:
+        place = self._places.get(guest.place)
+        if place is None or guest.late_s is None:
+            return
+        if guest.comes_s is None and (guest.late_s == 0.0 or _is_at(robot.at, place)):
+            guest.comes_s = time_s + guest.late_s
+        if guest.comes_s is not None and time_s >= guest.comes_s:
+            guest.where = around.room_beside(place)
+            guest.thinks_s = time_s + _THINKS_EVERY_S
+
+    def _follow(
+        self, guest: Guest, robot: BuildingRobot, time_s: float, around: Surroundings
+    ) -> None:
+        _note_trail(guest, robot)
+        here = np.array([guest.at.x, guest.at.y])
+        stop, inside = around.stop_around(robot), around.stop_around(guest)
+        if stop is not None and _gets_in(guest, robot, stop):
+            self._get_in(guest, robot, stop, around)
+            return
+        left_m = guest.way_m(robot.at)
+        goes = inside is not None or (guest.led and not self._dawdles(guest, time_s))
+        goes = goes and robot.at.floor == guest.at.floor and left_m >= _FOLLOWS_M
+        if not goes or not guest.trail:
+            self._step(guest, here, 0.0, robot, around)
+            return
+        if open_doors(around.doors, guest.at, time_s):
+            return
+        slowed = (left_m - _FOLLOWS_M + 0.2) / _SLOWS_OVER_M
+        goal = np.array(guest.trail[0])
+        self._step(guest, goal, guest.speed_m_s * min(1.0, slowed), robot, around)
+
+    def _dawdles(self, guest: Guest, time_s: float) -> bool:
+        if time_s >= guest.thinks_s:
+            stops, long = self._rng.random(2)
+            guest.thinks_s = time_s + _THINKS_EVERY_S
+            if stops < self._dawdling:
+                guest.paused_until_s = time_s + _between(_DAWDLES_S, long)
+                guest.thinks_s += guest.paused_until_s - time_s
+        return time_s < guest.paused_until_s
+
+    def _get_in(
+        self, guest: Guest, robot: BuildingRobot, stop: Point, around: Surroundings
+    ) -> None:
+        """To the other side of the middle of a cabin that a robot stands in."""
+        off = np.array([stop[0] - robot.at.x, stop[1] - robot.at.y])
+        goal = np.array(stop) + _FROM_STOP_M * off / max(float(np.hypot(*off)), 1e-6)
+        away_m = math.dist(goal, (guest.at.x, guest.at.y))
+        speed = 0.0 if away_m < 0.01 else min(guest.speed_m_s, away_m / 0.5)
+        self._step(guest, goal, speed, robot, around, _IN_CABIN_KEEP_M)
+
+    def _step(
+        self,
+        guest: Guest,
+        goal: Matrix,
+        speed_m_s: float,
+        robot: BuildingRobot,
+        around: Surroundings,
+        keep_m: float | None = None,
+    ) -> None:
+        """One step to a goal; who is to `keep_m` from robots is not pushed off by any."""
+        at = guest.at
+        here = np.array([at.x, at.y])
+        hard = _near(guest, around, robot if keep_m is not None else None)
+        if keep_m is not None:
+            wanted = speed_m_s * (goal - here) / max(float(np.hypot(*(goal - here))), 1e-6)
+        else:
+            most_m_s = max(speed_m_s, guest.speed_m_s)
+            wanted = pushed(np.array(guest.velocity), here, goal, speed_m_s, hard, most_m_s)
+            if speed_m_s == 0.0 and np.hypot(*wanted) < _STILL_M_S:
+                wanted = np.zeros(2)
+        to = free_step(here, wanted, hard, around.segments(at.floor))
+        if to is None:
+            guest.velocity = (0.0, 0.0)
+            return
+        x, y = float(to[0]), float(to[1])
+        guest.velocity = ((x - at.x) / PERIOD_S, (y - at.y) / PERIOD_S)
+        guest.where = FloorPose(at.floor, x, y)
+
+    # --- What they are rebuilt from -------------------------------------------------------------
+
+    def snapshot(self) -> dict[int, GuestSnapshot]:
+        """Who is where, and whom they follow."""
+        return {
+            robot: GuestSnapshot(
+                person=each.person,
+                place=each.place,
+                at=None if each.where is None else (each.at.floor, each.at.x, each.at.y),
+                speed_m_s=each.speed_m_s,
+                late_s=each.late_s,
+                comes_s=each.comes_s,
+                led=each.led,
+                velocity=each.velocity,
+                trail=list(each.trail),
+                trail_floor=each.trail_floor,
+                paused_until_s=each.paused_until_s,
+                thinks_s=each.thinks_s,
+                left_s=each.left_s,
+            )
+            for robot, each in self.of_robots.items()
+        }
+
+    def draws(self) -> str:
+        """What is drawn next."""
+        return written_draws(self._rng)
+
+    def restore(self, guests: Mapping[int, GuestSnapshot], draws: str) -> None:
+        """Raises `ValueError` for draws that no generator wrote."""
+        read_draws(self._rng, draws)
+        self.of_robots = {
+            robot: Guest(
+                person=each.person,
+                place=each.place,
+                speed_m_s=each.speed_m_s,
+                late_s=each.late_s,
+                where=None if each.at is None else FloorPose(*each.at),
+                comes_s=each.comes_s,
+                led=each.led,
+                velocity=each.velocity,
+                trail=list(each.trail),
+                trail_floor=each.trail_floor,
+                paused_until_s=each.paused_until_s,
+                thinks_s=each.thinks_s,
+                left_s=each.left_s,
+            )
+            for robot, each in guests.items()
+        }
+
+
+def _between(limits: tuple[float, float], share: float) -> float:
+    low, high = limits
+    return float(low + share * (high - low))
+
+
+def _has_gone(guest: Guest, time_s: float) -> bool:
+    return guest.left_s is not None and time_s - guest.left_s > _LEAVES_S
+
+
+def _is_at(at: FloorPose, place: FloorPose) -> bool:
+    return at.floor == place.floor and math.dist((at.x, at.y), (place.x, place.y)) < _AT_PLACE_M
+
+
+def _note_trail(guest: Guest, robot: BuildingRobot) -> None:
+    """Remember where the robot is, and forget what the guest has passed."""
+    at = robot.at
+    if not at.floor.startswith("/"):
+        if at.floor != guest.trail_floor:
+            guest.trail, guest.trail_floor = [], at.floor
+        last = guest.trail[-1] if guest.trail else None
+        if last is None or math.dist(last, (at.x, at.y)) >= _CRUMB_M:
+            guest.trail.append((at.x, at.y))
+    if guest.at.floor != guest.trail_floor:
+        return
+    here = guest.at.x, guest.at.y
+    passed = [n for n, each in enumerate(guest.trail) if math.dist(each, here) < _PASSED_M]
+    if passed:
+        del guest.trail[: passed[-1] + 1]
+
+
+def _ride_alone(guest: Guest, robot: FloorPose, around: Surroundings) -> str:
+    """Be on the robot's floor, where it came along, as near to the elevator as there is room."""
+    for number, point in enumerate([*guest.trail, (robot.x, robot.y)]):
+        at = around.room_beside(FloorPose(robot.floor, *point))
+        if at is not None:
+            guest.where, guest.trail = at, guest.trail[number:]
+            return ""
+    return f"there is no room for {guest.person} beside the robot"
+
+
+def _near(guest: Guest, around: Surroundings, beside: BuildingRobot | None) -> Matrix:
+    """What somebody keeps off, as circles (n, 3): of who they are `beside` by less."""
+    floor = guest.at.floor
+    people = ((at.x, at.y, RADIUS_M + KEEP_M) for at in around.people(floor, guest))
+    robots = (
+        circle
+        for each in around.robots
+        if each.at.floor == floor
+        for circle in (ahead(each, _IN_CABIN_KEEP_M) if each is beside else ahead(each))
+    )
+    return np.array([*people, *robots], np.float64).reshape(-1, 3)
+
+
+def _gets_in(guest: Guest, robot: BuildingRobot, stop: Point) -> bool:
+    """Whether who follows is near the cabin in which the robot stands, and has room there."""
+    if math.dist(stop, (robot.at.x, robot.at.y)) < _ASIDE_M:
+        return False
+    near = math.dist(stop, (guest.at.x, guest.at.y)) < _NEAR_STOP_M
+    return guest.led and near and robot.at.floor == guest.at.floor and not robot.moving

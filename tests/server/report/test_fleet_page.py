@@ -1,0 +1,82 @@
+"""The page of a fleet's report needs nothing but itself, and shows what was found and failed."""
+
+import csv
+import re
+from pathlib import Path
+
+from fleet_events import FLEET, SITE, LegMaker
+from test_fleet_history import day
+
+from mend.fleet.requests import LegAction
+from mend.server.journal import events as ev
+from mend.server.report.fleet_history import FleetHistory
+from mend.server.report.fleet_page import tables_of, write_fleet_csv, write_fleet_report
+from mend.server.report.span import Span
+
+
+def trouble() -> list[ev.Event]:
+    """A leg that fails, a way that is found shut, and a robot that is taken out of service."""
+    visit = LegMaker("r0", 3, "<b>tea</b>", LegAction.VISIT)
+    found = ev.FleetTold(at_s=150.0, told="found of the way: blocked", finder="r0", **FLEET)
+    out = ev.FleetTold(at_s=180.0, told="took r0 out", robot="r0", in_service=False, **FLEET)
+    return [visit.begun(140.0), found, visit.ended(170.0, outcome="failed"), out]
+
+
+def page(tmp_path: Path, events: list[ev.Event]) -> str:
+    history = FleetHistory.of(SITE, events, Span())
+    write_fleet_report(tmp_path / "report.html", history, tables_of(history))
+    return (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_it_refers_to_nothing_outside(tmp_path: Path) -> None:
+    text = page(tmp_path, [*day(), *trouble()])
+    assert not re.findall(r"(?:src|href)=|url\(|@import|<script", text)
+    assert set(re.findall(r"https?://[^\s\"<]+", text)) == {"http://www.w3.org/2000/svg"}
+
+
+def test_it_marks_what_failed_and_was_found_and_says_so(tmp_path: Path) -> None:
+    text = page(tmp_path, [*day(), *trouble()])
+    for class_ in ("failed", "found", "out"):
+        assert re.search(rf'<path [^>]*class="{class_}"><title>', text)
+    assert (
+        "5 legs of 2 robots in 3.0 min, of which 1 ended without being done; 1 finding of" in text
+    )
+    assert "<b>tea" not in text
+
+
+def test_it_tells_first_what_there_is_to_know_first(tmp_path: Path) -> None:
+    figures = re.findall(r"<li><strong>([^<]*)</strong><span>([^<]*)<", page(tmp_path, day()))
+    assert figures == [
+        ("1 of 2", "requests done"),
+        ("4", "legs ended"),
+        ("100 m", "driven"),
+        ("2", "interventions"),
+        ("50 m", "between interventions"),
+        ("1.5 min", "saved by transfers, as planned"),
+    ]
+
+
+def test_every_chart_has_words_for_those_who_do_not_see_it(tmp_path: Path) -> None:
+    text = page(tmp_path, day())
+    charts = re.findall(
+        r'<svg xmlns[^>]*role="img" aria-label="[^"]+">\s*<title>[^<]+</title>', text
+    )
+    assert len(charts) == text.count('aria-label="Chart: ') == 5
+
+
+def test_a_time_without_requests_has_a_page_without_charts(tmp_path: Path) -> None:
+    text = page(tmp_path, trouble()[-1:])
+    assert "Chart:" not in text
+
+
+def test_every_table_and_the_timeline_are_written_as_csv(tmp_path: Path) -> None:
+    history = FleetHistory.of(SITE, day(), Span())
+    tables = tables_of(history)
+    write_fleet_csv(tmp_path, history, tables)
+    assert {each.stem for each in tmp_path.glob("*.csv")} == {
+        *(each.name for each in tables),
+        "stretches",
+    }
+    with (tmp_path / "legs.csv").open(encoding="utf-8", newline="") as file:
+        legs = list(csv.DictReader(file))
+    assert [each["driven, m"] for each in legs] == ["30", "50", "", "20"]

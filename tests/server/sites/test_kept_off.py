@@ -1,0 +1,84 @@
+"""A site tells its robots which ways are closed, those that know of such things."""
+
+from collections.abc import Callable
+from typing import Any
+from uuid import UUID
+
+from mend.robots.link.messages import Avoid, ClosedWay, Hello
+from mend.server.runtime.clock import WorldTime
+from mend.server.sites.site import Site
+from mend.tasks.frames import Frame
+
+LANE = frozenset(("F1/b", "F1/a"))
+TOLD = Avoid(ways=[ClosedWay(between=["F1/a", "F1/b"], until=90.0)])
+
+
+class FakeRegistry:
+    """Robots that are connected, and what they are told of ways."""
+
+    def __init__(self) -> None:
+        self.hellos: dict[str, Hello] = {}
+        self.told: list[tuple[str, Avoid]] = []
+
+    def connected(self, robot: str) -> bool:
+        return robot in self.hellos
+
+    def hello(self, robot: str) -> Hello | None:
+        return self.hellos.get(robot)
+
+    def send(self, robot: str, _: str, body: Any, **__: object) -> None:
+        if isinstance(body, Avoid):
+            self.told.append((robot, body))
+
+
+class FakeWorld:
+    time = WorldTime()
+
+    def came(self, robot: str) -> None:
+        """Nothing."""
+
+
+def hello(robot: str, *, knows: bool = True, boot: str = "1") -> Hello:
+    return Hello(
+        protocol=1,
+        robot=robot,
+        boot=boot,
+        behaviors=["go_to"],
+        cameras=[],
+        time=0.0,
+        avoids_ways=knows,
+    )
+
+
+async def site_of(*hellos: Hello) -> tuple[Site, FakeRegistry]:
+    registry: Any = FakeRegistry()
+    journal: Any = None
+    world: Callable[..., Any] = lambda _: FakeWorld()  # noqa: E731
+    robots = {name: Frame() for name in ("ada", "bob")}
+    site = Site(UUID(int=1), robots, world, registry, journal, lambda _: None)
+    for each in hellos:
+        await come(site, registry, each)
+    return site, registry
+
+
+async def come(site: Site, registry: FakeRegistry, said: Hello) -> None:
+    registry.hellos[said.robot] = said
+    await site.robot_connected(said.robot, said)
+
+
+async def test_those_that_know_of_such_things_are_told_once() -> None:
+    site, registry = await site_of(hello("ada"), hello("bob", knows=False))
+    assert not registry.told, "nothing is closed"
+    site.keep_off({LANE: 90.0})
+    site.keep_off({LANE: 90.0})
+    assert registry.told == [("ada", TOLD)]
+    site.keep_off({})
+    assert registry.told[1:] == [("ada", Avoid())]
+
+
+async def test_who_comes_later_is_told_then_and_who_comes_again_anew() -> None:
+    site, registry = await site_of(hello("ada"))
+    site.keep_off({LANE: 90.0})
+    await come(site, registry, hello("bob"))
+    await come(site, registry, hello("ada", boot="2"))
+    assert registry.told == [("ada", TOLD), ("bob", TOLD), ("ada", TOLD)]

@@ -1,0 +1,25 @@
+// What is known of a fleet at a moment of its past, folded from its events.
+import type { Event, RequestStatus, RequestView } from "../wire/types";
+
+export type FleetEvent = Extract<Event, { at_s: number }>;
+
+export function isOfFleet(event: Event): event is FleetEvent {
+  return "at_s" in event;
+}
+
+/** The events until a moment of the site's clock. */
+export function eventsUntil(events: readonly FleetEvent[], time: number): readonly FleetEvent[] {
+  return events.filter(({ at_s }) => at_s <= time);
+}
+
+/** The requests as they were told of last, in the order in which they came. */
+export function requestsAfter(events: readonly FleetEvent[]): readonly RequestView[] {
+  const requests = new Map<string, RequestView>();
+  for (const event of events) {
+    if (event.type !== "request_changed") continue;
+    const { request: name, site, what, reason, robot, done_s } = event;
+    const expected = robot === null || done_s === null ? null : { robot, place: "", begins_s: event.at_s, done_s };
+    requests.set(name, { name, site, what, status: event.status as RequestStatus, reason, expected });
+  }
+  return [...requests.values()];
+}

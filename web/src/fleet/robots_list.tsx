@@ -1,0 +1,193 @@
+// The robots of a fleet in words, and what an operator may have each do.
+import { useState } from "preact/hooks";
+import { Confirm } from "../app/confirm";
+import { ACTIVITY_SIGNS, ACTIVITY_WORDS } from "../building/at_work";
+import type { SeenRobot } from "../building/seen_robots";
+import { robotName } from "../question/fault_words";
+import { sentence } from "../run/run_words";
+import { may } from "../state/access";
+import * as rest from "../wire/rest";
+import type { ErrandEnded, FleetRobot, FleetView } from "../wire/types";
+import type { FleetEvent } from "./fleet_past";
+import { isAtInWords, placeInWords, sureInWords, wholeClock } from "./fleet_words";
+
+interface RobotsListProps {
+  fleet: FleetView;
+  seen: readonly SeenRobot[];
+  events: readonly FleetEvent[];
+  onShow(robot: string): void;
+  /** Something was done: look what has become of it. */
+  changed(): void;
+}
+
+export function RobotsList({ fleet, seen, events, onShow, changed }: RobotsListProps) {
+  return (
+    <section class="panel" aria-labelledby="fleet-robots-title">
+      <h2 id="fleet-robots-title">Robots</h2>
+      <ul class="plan-robots" aria-label="Robots of the fleet">
+        {fleet.robots.map((robot) => {
+          const found = seen.find((each) => each.robot === robot.robot);
+          return found === undefined ? null : (
+            <Row key={robot.robot} {...{ fleet, robot, seen: found, onShow, changed }} came={lastErrand(events, robot.robot)} />
+          );
+        })}
+      </ul>
+    </section>
+  );
+}
+
+/** How its last errand ended, as long as it has not begun anything since. */
+function lastErrand(events: readonly FleetEvent[], robot: string): ErrandEnded | null {
+  const last = events.findLast((event) => "robot" in event && event.robot === robot && BEGINS_OR_ENDS.has(event.type));
+  return last?.type === "errand_ended" ? last : null;
+}
+
+const BEGINS_OR_ENDS: ReadonlySet<string> = new Set(["leg_begun", "leg_ended", "errand_begun", "errand_ended"]);
+
+interface RowProps {
+  fleet: FleetView;
+  robot: FleetRobot;
+  seen: SeenRobot;
+  came: ErrandEnded | null;
+  onShow(robot: string): void;
+  changed(): void;
+}
+
+function Row({ fleet, robot, seen, came, onShow, changed }: RowProps) {
+  const where = seen.where === null ? "Nobody knows where it is" : sentence(seen.unseen === null ? seen.where : `${seen.unseen}, ${seen.where}`).slice(0, -1);
+  return (
+    <li class="plan-row fleet-robot">
+      <div class="fleet-robot-head">
+        <button type="button" class="small-button" disabled={seen.where === null} onClick={() => onShow(robot.robot)}>
+          <span class="unseen">Show </span>
+          {seen.name}
+        </button>
+        <State robot={robot} seen={seen} />
+        {robot.run !== null && (
+          <a class="small" href={`/runs/${robot.run}`}>
+            Run<span class="unseen"> of {seen.name}</span>
+          </a>
+        )}
+      </div>
+      <p class="small">
+        {where}
+        {robot.pose?.covariance != null && ` (sure to ${sureInWords(robot.pose.covariance)})`}; {isAtInWords(robot)}.{robot.aboard.length > 0 && ` It has ${robot.aboard.join(", ")} aboard.`}
+      </p>
+      {came !== null && <p class="small quiet">{errandInWords(came)}</p>}
+      {may("operator") && <Deeds {...{ fleet, robot, changed }} />}
+    </li>
+  );
+}
+
+function errandInWords({ came, place, at, at_s, reason }: ErrandEnded): string {
+  if (came) return `It came to ${placeInWords(place)} at ${wholeClock(at_s)}.`;
+  return `It did not come to ${placeInWords(place)}: ${sentence(reason ?? "nobody knows why")} It stopped near ${placeInWords(at)} at ${wholeClock(at_s)}.`;
+}
+
+function State({ robot, seen: { activity, unseen, where } }: { robot: FleetRobot; seen: SeenRobot }) {
+  if (robot.out_of_service !== null) return <span class="badge plan-badge robot-waiting">⊘ Out of service</span>;
+  if (unseen !== null || where === null || !robot.connected) return <span class="badge plan-badge">✕ Not seen</span>;
+  return (
+    <span class={`badge plan-badge robot-${activity}`}>
+      {ACTIVITY_SIGNS[activity]} {ACTIVITY_WORDS[activity]}
+    </span>
+  );
+}
+
+type Asked = "send" | "out" | null;
+
+function Deeds({ fleet, robot, changed }: { fleet: FleetView; robot: FleetRobot; changed(): void }) {
+  const [asked, setAsked] = useState<Asked>(null);
+  const [failure, setFailure] = useState("");
+  const name = robotName(robot.robot);
+  const run = (deed: Promise<void>) => {
+    setAsked(null);
+    setFailure("");
+    void deed.then(changed, (error: Error) => setFailure(sentence(error.message)));
+  };
+  const send = (place: string) => run(rest.sendRobot(fleet.site, robot.robot, place));
+  return (
+    <>
+      <div class="fleet-deeds">
+        <Deed of={name} onDo={() => send(robot.home)}>
+          Send home
+        </Deed>
+        <Deed of={name} onDo={() => setAsked("send")}>
+          Send …
+        </Deed>
+        {robot.out_of_service === null ? (
+          <Deed of={name} onDo={() => setAsked("out")}>
+            Out of service …
+          </Deed>
+        ) : (
+          <Deed of={name} onDo={() => run(rest.putRobotBack(fleet.site, robot.robot))}>
+            Back in service
+          </Deed>
+        )}
+      </div>
+      <p class="mistake small" role="alert">
+        {failure}
+      </p>
+      {asked === "send" && <SendTo name={name} places={fleet.places} onSend={send} onCancel={() => setAsked(null)} />}
+      {asked === "out" && (
+        <TakeOut name={name} onTake={(reason) => run(rest.takeRobotOut(fleet.site, robot.robot, reason))} onCancel={() => setAsked(null)} />
+      )}
+    </>
+  );
+}
+
+/** A button that says of which robot it is to who does not see where it stands. */
+function Deed({ of, onDo, children }: { of: string; onDo(): void; children: string }) {
+  return (
+    <button type="button" class="small-button" onClick={onDo}>
+      {children}
+      <span class="unseen"> {of}</span>
+    </button>
+  );
+}
+
+interface SendToProps {
+  name: string;
+  places: readonly string[];
+  onSend(place: string): void;
+  onCancel(): void;
+}
+
+function SendTo({ name, places, onSend, onCancel }: SendToProps) {
+  const [place, setPlace] = useState(places[0] ?? "");
+  return (
+    <Confirm title={`Send ${name} where?`} confirm="Send it" harmless onConfirm={() => onSend(place)} onCancel={onCancel}>
+      <div class="field fleet-asked-for">
+        <label for="fleet-send-to">Place</label>
+        <select id="fleet-send-to" value={place} onChange={(event) => setPlace(event.currentTarget.value)}>
+          {places.map((each) => (
+            <option key={each} value={each}>
+              {placeInWords(each)}
+            </option>
+          ))}
+        </select>
+      </div>
+      <p class="small quiet">What it is to do for people it begins once it is there.</p>
+    </Confirm>
+  );
+}
+
+const LONGEST = 300;
+
+function TakeOut({ name, onTake, onCancel }: { name: string; onTake(reason: string): void; onCancel(): void }) {
+  const [reason, setReason] = useState("");
+  const [mistake, setMistake] = useState("");
+  const take = () => (reason.trim() === "" ? setMistake("Say why: others will see it.") : onTake(reason.trim()));
+  return (
+    <Confirm title={`Take ${name} out of service?`} confirm="Take it out" onConfirm={take} onCancel={onCancel}>
+      <p>It breaks off what it does, and others fetch what it has aboard.</p>
+      <div class="field fleet-asked-for">
+        <label for="fleet-out-why">Why</label>
+        <input id="fleet-out-why" type="text" maxLength={LONGEST} value={reason} onInput={(event) => setReason(event.currentTarget.value)} />
+      </div>
+      <p class="mistake" role="alert">
+        {mistake}
+      </p>
+    </Confirm>
+  );
+}
