@@ -69,6 +69,16 @@ async def test_a_room_is_found_by_its_floor_and_number(
     assert (await service.fleets.requests(None)) == []
 
 
+async def test_whoever_asks_is_shown_the_way(service: Service, open_page: OpenPage) -> None:
+    page = await at_robot(service, open_page)
+    await press(page, "Show me the way")
+    await press(page, "F1 106")
+    await expect(page.get_by_role("heading", name="I am to show you the way from")).to_be_focused()
+    await press(page, "Yes, that is right")
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("is expected to be done with it in about")
+
+
 async def test_what_is_said_in_words_is_asked_back_read_back_and_done(
     service: Service, open_page: OpenPage
 ) -> None:
