@@ -14,6 +14,7 @@ from dispatch_office import asked, dispatcher_for, office, visit
 from mend.errors import ConflictError, NotFoundError
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.requests import RequestStatus
+from mend.robots.base.behaviors.behavior import MEETS_M
 from mend.robots.link.messages import Driven
 from mend.server.fleets import leg_execution
 from mend.server.fleets.fleet_at_work import FleetAtWork
@@ -300,7 +301,7 @@ async def test_a_robot_that_is_too_early_waits_at_the_place() -> None:
     async with working("a") as work:
         await work.fleet.submit(asked(earliest_s=600.0), None)
         going = await work.runs.nth(1)
-        assert (going.behavior, going.parameters) == ("go_to", {"place": "b"})
+        assert (going.behavior, going.parameters) == ("go_to", {"place": "b", "near_m": MEETS_M})
         assert 500.0 < work.site.time.latest_s < 600.0
         going.ended.set_result(("finished", True))
         assert (await work.runs.nth(2)).behavior == "collect_item"
@@ -422,7 +423,7 @@ async def test_a_way_that_somebody_found_blocked_keeps_robots_off_it() -> None:
             await work.fleet.submit(visit(place="d", latest_s=200.0), None)
         await work.fleet.found(WayFound(finding="open", between=["b", "c"]), None)
         await work.fleet.submit(visit(place="d", latest_s=200.0), None)
-        assert (await work.runs.nth(1)).parameters == {"place": "d"}
+        assert (await work.runs.nth(1)).parameters == {"place": "d", "near_m": MEETS_M}
 
 
 async def test_a_fault_within_ends_the_leg_and_not_the_fleet(
@@ -449,7 +450,7 @@ async def test_what_somebody_had_left_out_is_not_done() -> None:
         bringing.ended.set_result(("finished", False))
         # It is tried again later: until then its robot waits at the place.
         going = await work.runs.nth(3)
-        assert (going.behavior, going.parameters) == ("go_to", {"place": "d"})
+        assert (going.behavior, going.parameters) == ("go_to", {"place": "d", "near_m": MEETS_M})
         going.ended.set_result(("finished", True))
         assert (await work.runs.nth(4)).behavior == "hand_over_item"
         assert await work.status("tea") is RequestStatus.UNDER_WAY
