@@ -10,7 +10,7 @@ from mend.fleet.requests import Request, RequestStatus
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
 from mend.server.api.services import Limit, Offset, SiteId, WithCaller, WithServices
-from mend.server.fleets.operator_requests import GoThere, OutOfService, WayFound
+from mend.server.fleets.operator_requests import GoThere, OutOfService, WayReport
 from mend.server.fleets.views import FleetView, RequestView
 
 router = APIRouter(tags=["requests"], route_class=RepeatableRoute)
@@ -174,7 +174,7 @@ async def send_robot(
 async def tell_of_way(
     site: SiteId,
     found: Annotated[
-        WayFound, Body(examples=[{"finding": "blocked", "between": ["F1/hall", "F1/lift"]}])
+        WayReport, Body(examples=[{"finding": "blocked", "between": ["F1/hall", "F1/lift"]}])
     ],
     services: WithServices,
     caller: WithCaller,

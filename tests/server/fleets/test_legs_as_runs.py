@@ -20,7 +20,7 @@ from mend.server.fleets import leg_execution
 from mend.server.fleets.fleet_at_work import FleetAtWork
 from mend.server.fleets.fleet_record import FleetRecord
 from mend.server.fleets.fleets import KIND
-from mend.server.fleets.operator_requests import WayFound
+from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.journal import events as ev
@@ -418,10 +418,10 @@ async def test_a_robot_that_is_out_of_service_works_only_once_it_is_put_back() -
 
 async def test_a_way_that_somebody_found_blocked_keeps_robots_off_it() -> None:
     async with working("a") as work:
-        await work.fleet.found(WayFound(finding="blocked", between=["b", "c"]), None)
+        await work.fleet.found(WayReport(finding="blocked", between=["b", "c"]), None)
         with pytest.raises(RequestRefusedError):
             await work.fleet.submit(visit(place="d", latest_s=200.0), None)
-        await work.fleet.found(WayFound(finding="open", between=["b", "c"]), None)
+        await work.fleet.found(WayReport(finding="open", between=["b", "c"]), None)
         await work.fleet.submit(visit(place="d", latest_s=200.0), None)
         assert (await work.runs.nth(1)).parameters == {"place": "d", "near_m": MEETS_M}
 
@@ -483,4 +483,4 @@ def _place_of_r0(dispatcher: Dispatcher) -> str:
 async def test_who_says_that_an_elevator_is_dead_names_one_that_there_is() -> None:
     async with working("a") as work:
         with pytest.raises(NotFoundError, match="there is no elevator 'lift9'"):
-            await work.fleet.found(WayFound(finding="elevator_dead", elevator="lift9"), None)
+            await work.fleet.found(WayReport(finding="elevator_dead", elevator="lift9"), None)

@@ -22,7 +22,7 @@ import type {
   DocumentCheck,
   DocumentSummary,
   DocumentView,
-  WayFound,
+  WayReport,
   WorldView,
 } from "./types";
 import type { Told } from "./told";
@@ -174,7 +174,7 @@ export const takeRobotOut = (site: string, robot: string, reason: string) =>
 export const putRobotBack = (site: string, robot: string) => call<void>("POST", ofRobot(site, robot, "back_in_service"));
 export const sendRobot = (site: string, robot: string, place: string) =>
   call<void>("POST", ofRobot(site, robot, "go"), { place });
-export const tellOfWay = (site: string, way: WayFound) => call<void>("POST", ofFleet(site, "/ways"), way);
+export const tellOfWay = (site: string, way: WayReport) => call<void>("POST", ofFleet(site, "/ways"), way);
 /** What became of a site after `after`, in order. */
 export async function siteEvents(id: string, after = 0): Promise<Event[]> {
   const all: Event[] = [];
