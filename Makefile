@@ -8,10 +8,10 @@ READY := $(VENV)/.ready
 # Much is done by processes that begin anew: each would compile every module once more.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup demo types console screenshots serve test console-tests arm-kernels building-kernels fleet-kernels test-modules steady lint bench lock sbom clean
+.PHONY: help setup demo demo-building types console screenshots serve test console-tests arm-kernels building-kernels fleet-kernels test-modules steady lint bench lock sbom clean
 
 help:  ## Say what there is
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 10
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 10
 
 setup: $(READY)  ## Make .venv with everything (the other targets do this first)
 
@@ -25,6 +25,16 @@ $(READY): requirements.lock pyproject.toml scripts/setup
 
 demo: $(READY)  ## A PR2 builds a table base, is robbed, asks for help, and finishes
 	$(BIN)/mend run eket --world workcell --scenario eket_paper --speed max --seed 7 --report out/eket_paper.html
+
+OFFICE := out/tall_office
+demo-building: $(READY)  ## Two hours of four robots in an office: deliveries, faults, help, and a report
+	@mkdir -p out/scenes
+	$(BIN)/mend building generate --seed 1 --floors 4 --rooms 30 -o $(OFFICE).yaml
+	$(BIN)/mend building scene $(OFFICE).yaml --robots 4 -o out/scenes/tall_office.yaml
+	$(BIN)/mend building run out/scenes/tall_office.yaml examples/buildings/shift.yaml --seed 7 \
+	    --option localizer=exact --option wrong_floors=0.3 \
+	    --transfer F1/lift1 --transfer F2/lift1 --transfer F3/lift1 --transfer F4/lift1 \
+	    --helper reception --helper caretaker --report out/tall_office.html
 
 # Node comes from a wheel in .venv, so that no system Node is needed.
 web/node_modules/.ready: web/package-lock.json $(READY)

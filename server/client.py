@@ -28,7 +28,7 @@ from mend.server.documents import (
     SceneSummary,
 )
 from mend.server.fleets.asking import AskedRobotView, UnderstoodView, WordsAsked
-from mend.server.fleets.operator_requests import WayFound
+from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.views import FleetView, RequestView
 from mend.server.journal.events import (
     Answered,
@@ -347,7 +347,7 @@ class MendClient:
         path = f"/api/sites/{site}/fleet/robots/{quote(robot)}/go"
         await self._request("POST", path, json={"place": place})
 
-    async def tell_of_way(self, site: UUID, way: WayFound) -> None:
+    async def tell_of_way(self, site: UUID, way: WayReport) -> None:
         """Say that a way is blocked, a door closed, or open again."""
         path = f"/api/sites/{site}/fleet/ways"
         await self._request("POST", path, json=way.model_dump(mode="json"))

@@ -17,7 +17,7 @@ from mend.server.fleets.asking import (
     asked_robot,
     understand,
 )
-from mend.server.fleets.operator_requests import GoThere, OutOfService, WayFound
+from mend.server.fleets.operator_requests import GoThere, OutOfService, WayReport
 from mend.server.fleets.views import FleetView, RequestView
 
 router = APIRouter(tags=["requests"], route_class=RepeatableRoute)
@@ -206,7 +206,7 @@ async def send_robot(
 async def tell_of_way(
     site: SiteId,
     found: Annotated[
-        WayFound, Body(examples=[{"finding": "blocked", "between": ["F1/hall", "F1/lift"]}])
+        WayReport, Body(examples=[{"finding": "blocked", "between": ["F1/hall", "F1/lift"]}])
     ],
     services: WithServices,
     caller: WithCaller,

@@ -27,7 +27,7 @@ from mend.server.fleets.fleets import KIND
 from mend.server.fleets.leg_execution import LegExecution, LegTurn
 from mend.server.fleets.leg_task import doable_kinds, require_doable
 from mend.server.fleets.making_way import who_makes_way
-from mend.server.fleets.operator_requests import WayFound
+from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.fleets.robot_findings import finding_of, findings, is_led_round
@@ -379,7 +379,7 @@ class FleetAtWork:
 
     # --- What operators say -------------------------------------------------------------------
 
-    async def found(self, way: WayFound, author: ev.Author | None) -> None:
+    async def found(self, way: WayReport, author: ev.Author | None) -> None:
         """A way was found blocked, or open. Raises as `Dispatcher.found`."""
         a, b = way.between or self._stops_of(way.elevator or "")
         what = f"the way between {a} and {b}" if way.elevator is None else way.elevator

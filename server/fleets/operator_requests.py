@@ -24,7 +24,7 @@ class GoThere(BaseModel):
     place: PlaceName
 
 
-class WayFound(BaseModel):
+class WayReport(BaseModel):
     """What somebody has found of the way `between` two neighbouring places, or of an `elevator`.
 
     `until_s`: until when it may last (the site's clock); without, it is forgotten after a while.

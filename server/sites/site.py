@@ -89,8 +89,9 @@ class Site:
         return self._registry.connected(robot)
 
     def whereabouts(self, robot: str) -> Point | None:
-        """Where a robot was when a run's look last said so, in the scene's frame."""
-        return self._seen_at.get(robot)
+        """Where a robot says that it is, in the scene's frame; else what a run's look last said."""
+        shown = self.base(robot)
+        return self._seen_at.get(robot) if shown is None else shown.pose[:3]
 
     def show_bases(self) -> None:
         """Have its robots say where they are, also those that no run has."""

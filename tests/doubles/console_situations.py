@@ -15,7 +15,7 @@ from mend.fleet.requests import DeliverMessage, GoToRoom, Transport
 from mend.maps.building.building import Building
 from mend.maps.building.random_building import random_building
 from mend.server.composition import Service
-from mend.server.fleets.operator_requests import WayFound
+from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.runtime.requests import RunRequest
 from mend.server.sites.requests import SiteRequest
@@ -264,7 +264,7 @@ async def fleet(service: Service, open_page: OpenPage) -> Page:
     await at_work.take_out(second, "its wheel squeaks", None)
     lane = at_work.dispatcher.building.floors["F1"].lanes[0]
     between = [f"F1/{each}" for each in lane.between]
-    await at_work.found(WayFound(finding="blocked", between=between), None)
+    await at_work.found(WayReport(finding="blocked", between=between), None)
     wanted = [
         Transport(name="parcel", what="the blue parcel", origin="F1/101", destination="F1/106"),
         DeliverMessage(name="lunch", place="F1/103", message="Lunch.", earliest_s=600.0),

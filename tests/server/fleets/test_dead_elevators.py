@@ -9,7 +9,7 @@ from mend.fleet.dispatch.leg import Finding, Found
 from mend.fleet.requests import GoToRoom
 from mend.maps.building.building import Building
 from mend.maps.building.random_building import random_building
-from mend.server.fleets.operator_requests import WayFound
+from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.robot_findings import is_led_round
 
 DEAD = ("F1/lift1", "F2/lift1")
@@ -53,4 +53,4 @@ def test_it_is_led_round_as_long_as_another_one_rides_there(building: Building) 
 )
 def test_it_is_either_a_way_or_an_elevator(finding: str, more: dict[str, object], why: str) -> None:
     with pytest.raises(ValidationError, match=why):
-        WayFound.model_validate({"finding": finding, **more})
+        WayReport.model_validate({"finding": finding, **more})

@@ -11,7 +11,7 @@ from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.requests import LegAction
 from mend.server.fleets.fleet_record import FleetRecord
 from mend.server.fleets.fleets import KIND
-from mend.server.fleets.operator_requests import WayFound
+from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.views import FleetView
 from mend.server.poses.bases import SeenBase
 
@@ -59,7 +59,7 @@ async def test_what_a_robot_is_at_is_told_apart_from_where_it_is_sent() -> None:
 
 async def test_closed_ways_are_told_with_who_found_them_until_they_are_open() -> None:
     async with working("a") as work:
-        closing = WayFound(finding="blocked", between=["c", "b"], until_s=900.0)
+        closing = WayReport(finding="blocked", between=["c", "b"], until_s=900.0)
         await work.fleet.found(closing, OLGA)
         (closed,) = (await view_of(work)).closed
         assert (closed.between, closed.finding, closed.by) == (
@@ -68,7 +68,7 @@ async def test_closed_ways_are_told_with_who_found_them_until_they_are_open() ->
             "olga",
         )
         assert closed.until_s == pytest.approx(900.0)
-        await work.fleet.found(WayFound(finding="open", between=["b", "c"]), OLGA)
+        await work.fleet.found(WayReport(finding="open", between=["b", "c"]), OLGA)
         assert (await view_of(work)).closed == []
         kept = (await work.journal.documents(KIND))[str(work.site.id)]
         assert FleetRecord.model_validate_json(kept).closed_ways == ()
@@ -76,7 +76,7 @@ async def test_closed_ways_are_told_with_who_found_them_until_they_are_open() ->
 
 async def test_who_found_a_way_closed_is_known_after_a_restart() -> None:
     async with working("a") as work:
-        await work.fleet.found(WayFound(finding="door_closed", between=["b", "c"]), OLGA)
+        await work.fleet.found(WayReport(finding="door_closed", between=["b", "c"]), OLGA)
         await work.fleet.stop()
         kept = (await work.journal.documents(KIND))[str(work.site.id)]
         was = FleetRecord.model_validate_json(kept)

@@ -14,12 +14,13 @@ from dispatch_office import asked, dispatcher_for, office, visit
 from mend.errors import ConflictError, NotFoundError
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.requests import RequestStatus
+from mend.robots.base.behaviors.behavior import MEETS_M
 from mend.robots.link.messages import Driven
 from mend.server.fleets import leg_execution
 from mend.server.fleets.fleet_at_work import FleetAtWork
 from mend.server.fleets.fleet_record import FleetRecord
 from mend.server.fleets.fleets import KIND
-from mend.server.fleets.operator_requests import WayFound
+from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.journal import events as ev
@@ -300,7 +301,7 @@ async def test_a_robot_that_is_too_early_waits_at_the_place() -> None:
     async with working("a") as work:
         await work.fleet.submit(asked(earliest_s=600.0), None)
         going = await work.runs.nth(1)
-        assert (going.behavior, going.parameters) == ("go_to", {"place": "b"})
+        assert (going.behavior, going.parameters) == ("go_to", {"place": "b", "near_m": MEETS_M})
         assert 500.0 < work.site.time.latest_s < 600.0
         going.ended.set_result(("finished", True))
         assert (await work.runs.nth(2)).behavior == "collect_item"
@@ -417,12 +418,12 @@ async def test_a_robot_that_is_out_of_service_works_only_once_it_is_put_back() -
 
 async def test_a_way_that_somebody_found_blocked_keeps_robots_off_it() -> None:
     async with working("a") as work:
-        await work.fleet.found(WayFound(finding="blocked", between=["b", "c"]), None)
+        await work.fleet.found(WayReport(finding="blocked", between=["b", "c"]), None)
         with pytest.raises(RequestRefusedError):
             await work.fleet.submit(visit(place="d", latest_s=200.0), None)
-        await work.fleet.found(WayFound(finding="open", between=["b", "c"]), None)
+        await work.fleet.found(WayReport(finding="open", between=["b", "c"]), None)
         await work.fleet.submit(visit(place="d", latest_s=200.0), None)
-        assert (await work.runs.nth(1)).parameters == {"place": "d"}
+        assert (await work.runs.nth(1)).parameters == {"place": "d", "near_m": MEETS_M}
 
 
 async def test_a_fault_within_ends_the_leg_and_not_the_fleet(
@@ -449,7 +450,7 @@ async def test_what_somebody_had_left_out_is_not_done() -> None:
         bringing.ended.set_result(("finished", False))
         # It is tried again later: until then its robot waits at the place.
         going = await work.runs.nth(3)
-        assert (going.behavior, going.parameters) == ("go_to", {"place": "d"})
+        assert (going.behavior, going.parameters) == ("go_to", {"place": "d", "near_m": MEETS_M})
         going.ended.set_result(("finished", True))
         assert (await work.runs.nth(4)).behavior == "hand_over_item"
         assert await work.status("tea") is RequestStatus.UNDER_WAY
@@ -482,4 +483,4 @@ def _place_of_r0(dispatcher: Dispatcher) -> str:
 async def test_who_says_that_an_elevator_is_dead_names_one_that_there_is() -> None:
     async with working("a") as work:
         with pytest.raises(NotFoundError, match="there is no elevator 'lift9'"):
-            await work.fleet.found(WayFound(finding="elevator_dead", elevator="lift9"), None)
+            await work.fleet.found(WayReport(finding="elevator_dead", elevator="lift9"), None)

@@ -5,7 +5,7 @@ import { robotName } from "../question/fault_words";
 import { sentence } from "../run/run_words";
 import { may, whyNot } from "../state/access";
 import * as rest from "../wire/rest";
-import type { ClosedWayView, FleetView } from "../wire/types";
+import type { ClosedWayView, FleetView, WayReport } from "../wire/types";
 import { closedInWords, placeInWords } from "./fleet_words";
 import { closedWay, type Picked, sameWay } from "./picked";
 
@@ -33,7 +33,7 @@ export function WaysPanel(props: WaysPanelProps) {
     setFailure("");
     void deed.then(changed, (error: Error) => setFailure(sentence(error.message)));
   };
-  const tell = (way: rest.WayTold) => run(rest.tellOfWay(fleet.site, way));
+  const tell = (way: WayReport) => run(rest.tellOfWay(fleet.site, way));
   return (
     <section class="panel fleet-ways" aria-labelledby="fleet-ways-title">
       <h2 id="fleet-ways-title">Ways</h2>
@@ -49,7 +49,7 @@ export function WaysPanel(props: WaysPanelProps) {
   );
 }
 
-function ClosedWays({ closed, tell }: { closed: readonly ClosedWayView[]; tell(way: rest.WayTold): void }) {
+function ClosedWays({ closed, tell }: { closed: readonly ClosedWayView[]; tell(way: WayReport): void }) {
   if (closed.length === 0) return <p class="small quiet">No way is closed.</p>;
   return (
     <ul class="closed-ways" aria-label="Ways that are closed now">
@@ -72,14 +72,14 @@ function ClosedWays({ closed, tell }: { closed: readonly ClosedWayView[]; tell(w
   );
 }
 
-function CloseWay({ fleet, plan, floor, picked, onPick, tell }: WaysPanelProps & { tell(way: rest.WayTold): void }) {
+function CloseWay({ fleet, plan, floor, picked, onPick, tell }: WaysPanelProps & { tell(way: WayReport): void }) {
   const [minutes, setMinutes] = useState(0);
   const shown = plan.floors.find(({ name }) => name === floor);
   const named = (lane: PlanLane) => lane.between.map((each) => `${floor}/${each}`) as [string, string];
   const lanes = shown?.lanes ?? [];
   const index = picked?.kind === "way" ? lanes.findIndex((lane) => sameWay(named(lane), picked.between)) : -1;
   const lane = lanes[index];
-  const close = (finding: rest.WayTold["finding"]) => {
+  const close = (finding: WayReport["finding"]) => {
     if (lane === undefined) return;
     tell({ finding, between: named(lane), until_s: minutes === 0 ? null : fleet.now_s + 60 * minutes });
   };

@@ -24,7 +24,7 @@ import type {
   DocumentCheck,
   DocumentSummary,
   DocumentView,
-  WayFoundInput,
+  WayReport,
   WorldView,
 } from "./types";
 import type { Told } from "./told";
@@ -178,9 +178,7 @@ export const takeRobotOut = (site: string, robot: string, reason: string) =>
 export const putRobotBack = (site: string, robot: string) => call<void>("POST", ofRobot(site, robot, "back_in_service"));
 export const sendRobot = (site: string, robot: string, place: string) =>
   call<void>("POST", ofRobot(site, robot, "go"), { place });
-/** What somebody tells of a way; an event of robots is called alike. */
-export type WayTold = Pick<WayFoundInput, "finding"> & Partial<WayFoundInput>;
-export const tellOfWay = (site: string, way: WayTold) => call<void>("POST", ofFleet(site, "/ways"), way);
+export const tellOfWay = (site: string, way: WayReport) => call<void>("POST", ofFleet(site, "/ways"), way);
 /** What became of a site after `after`, in order. */
 export async function siteEvents(id: string, after = 0): Promise<Event[]> {
   const all: Event[] = [];
