@@ -64,6 +64,12 @@ def open_fleet(
     return FleetAtWork(site, dispatcher, places, record.fleet, runs, journal, pace, utc_now, was)
 
 
+def _transfer_place(building: Building, places: PlaceNames, name: str) -> str:
+    """Raises `NotFoundError`, or `WrongInputError` where no robot is sent."""
+    places.in_scene(name)
+    return building.find(name)
+
+
 def _setting(record: SiteRecord, options: FleetOptions, building: Building) -> FleetSetting:
     places = PlaceNames(building, record.scene)
     robots = []
@@ -73,6 +79,8 @@ def _setting(record: SiteRecord, options: FleetOptions, building: Building) -> F
         robots.append(ServiceRobot(name=robot, start=start, capacity=options.capacity))
     return FleetSetting(
         robots=tuple(robots),
-        transfer_places=tuple(building.find(each) for each in options.transfer_places),
+        transfer_places=tuple(
+            _transfer_place(building, places, e) for e in options.transfer_places
+        ),
         policy=Policy(kept=KEPT),
     )

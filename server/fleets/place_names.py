@@ -1,10 +1,12 @@
 """The places of a building as the tasks of a scene call them, and back."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 from mend.errors import WrongInputError
 from mend.maps.building.building import Building
+from mend.maps.building.cabin import waiting_points
+from mend.sim.building.scene import NEEDS_M
 from mend.tasks.scene import Scene
 
 SAME_M = 0.05
@@ -59,11 +61,22 @@ class PlaceNames:
 
 
 def _called(building: Building, scene: Scene) -> Iterator[tuple[str, str]]:
+    stood_at = {floor: _stood_at(building, floor) for floor in building.floors}
     for name, place in scene.places.items():
         at = place.pose
         floor = building.floor_at(at.z or 0.0)
         if floor is None:
             continue
-        for each, there in building.floors[floor].places.items():
-            if math.hypot(at.x - there.x, at.y - there.y) < SAME_M:
+        for each, points in stood_at[floor].items():
+            if any(math.hypot(at.x - x, at.y - y) < SAME_M for x, y in points):
                 yield f"{floor}/{each}", name
+
+
+def _stood_at(building: Building, floor: str) -> Mapping[str, Sequence[tuple[float, float]]]:
+    """Where robots stand that are sent to a place: at an elevator before it."""
+    on = building.floors[floor]
+    stops = {each.stops.get(floor) for each in building.document.elevators.values()}
+    return {
+        name: waiting_points(on, (each.x, each.y), NEEDS_M) if name in stops else [(each.x, each.y)]
+        for name, each in on.places.items()
+    }
