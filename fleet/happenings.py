@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from mend.documents.strict_model import StrictModel
-from mend.fleet.requests import Moment, PlaceName, RequestName, Text
+from mend.fleet.requests import Moment, PlaceName, Text
 from mend.tasks.scene import Name
 
 
@@ -49,11 +49,11 @@ class NobodyAnswers(Lasting):
 
 
 class Cancelled(StrictModel):
-    """Somebody does not want any more what they asked for."""
+    """Somebody does not want any more what they asked for; of what recurs one, as `NAME/2`."""
 
     kind: Literal["cancelled"]
     at_s: Moment
-    request: RequestName
+    request: Annotated[str, Field(min_length=1, max_length=80)]
 
 
 Happening = Annotated[

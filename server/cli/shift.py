@@ -15,7 +15,6 @@ from mend.server.cli.local_user import local_author
 from mend.server.cli.shift_transcript import ShiftTranscript
 from mend.server.documents import DocumentKind
 from mend.server.fixed_documents import GivenFiles
-from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.journal import events as ev
 from mend.server.journal.stored_event import read_event
 from mend.server.journal.subscriptions import SubscriptionOverflowError
@@ -64,7 +63,7 @@ class Shift:
             fleet=fleet,
             interventions=_interventions(document.happenings),
         )
-        self._told = ShiftTranscript()
+        self._told = ShiftTranscript([each.name for each in document.requests])
         self._to_come = len(document.requests)
         self._over = asyncio.Event()
 
@@ -123,9 +122,6 @@ class Shift:
         try:
             _, booked = await service.fleets.submit(site, request, local_author())
             self._told.booked(booked.name)
-        except RequestRefusedError:
-            # What is refused is journaled, and told by that.
-            self._told.open.discard(request.name)
         except RefusalError as error:
             self._told.refused(request.name, str(error))
         self._to_come -= 1

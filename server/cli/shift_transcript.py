@@ -1,5 +1,6 @@
 """What happens in a shift, as lines on a terminal."""
 
+from collections.abc import Collection
 from uuid import UUID
 
 import typer
@@ -15,7 +16,9 @@ _TOLD = (Tone.FAULT, Tone.SAID, Tone.ASKED, Tone.ANSWERED, Tone.DEED, Tone.SETBA
 class ShiftTranscript:
     """Prints what is journaled, by the site's clock, and keeps what became of each request."""
 
-    def __init__(self) -> None:
+    def __init__(self, asked: Collection[str]) -> None:
+        """`asked`: the names of the requests that whoever follows the shift makes."""
+        self._asked = frozenset(asked)
         self.open: set[str] = set()
         self.ended: dict[str, str] = {}
         self._transcripts: dict[UUID, tuple[Transcript, float]] = {}
@@ -28,21 +31,22 @@ class ShiftTranscript:
 
     def refused(self, request: str, reason: str) -> None:
         """A request cannot be met."""
-        self.say(f"'{request}' is refused: {reason}")
+        self.say(f"refused: {reason}")
+        self.open.discard(request)
         self.ended[request] = RequestStatus.REFUSED
 
     def tell(self, event: ev.Event) -> None:
         """Print what an event says to whoever follows the shift."""
         match event:
             case ev.RequestChanged():
-                self._now_s = event.at_s
+                self._now_s = max(self._now_s, event.at_s)
                 self._tell_of_request(event)
             case ev.PlanChanged():
-                self._now_s = event.at_s
+                self._now_s = max(self._now_s, event.at_s)
                 others = f" ({', '.join(event.requests)})" if event.requests else ""
                 self.say(f"plan {event.number}: {event.reason}{others}")
             case ev.FleetTold():
-                self._now_s = event.at_s
+                self._now_s = max(self._now_s, event.at_s)
                 self.say(f"{event.finder or 'operator'} {event.told}")
             case ev.RunStarted():
                 self._transcripts[event.run] = Transcript(), self._now_s
@@ -72,6 +76,9 @@ class ShiftTranscript:
     # --- Within -------------------------------------------------------------------------------
 
     def _tell_of_request(self, event: ev.RequestChanged) -> None:
+        if event.status == RequestStatus.REFUSED and event.request in self._asked:
+            # Whoever asked is answered with more than that.
+            return
         by = f" by {event.robot}" if event.robot else ""
         due = f", expected at {event.done_s:.0f} s" if event.done_s is not None else ""
         why = f": {event.reason}" if event.reason else ""

@@ -31,7 +31,8 @@ def test_the_shipped_requests_are_all_met(tmp_path: Path) -> None:
     done = run(tmp_path, str(SCENE), str(REQUESTS), *exact)
     assert done.returncode == 0, done.stderr
     lines = [line[10:] for line in done.stdout.splitlines()]
-    assert lines[-1] == "5 of 5 requests are done"
+    assert lines[-1] == "of 5 requests: 5 done"
+    assert "shutting down" not in done.stderr
     assert {f"'{name}' is done" for name in NAMES} <= set(lines)
     times = [float(line[:8]) for line in done.stdout.splitlines()]
     assert times == sorted(times)
@@ -44,7 +45,7 @@ def test_what_cannot_be_met_is_refused_with_when_it_could_be(tmp_path: Path) -> 
     assert done.returncode == 1, done.stderr
     assert "refused: 'r' cannot be met" in done.stdout
     assert "it would be possible" in done.stdout
-    assert done.stdout.splitlines()[-1].endswith("0 of 1 requests are done")
+    assert done.stdout.splitlines()[-1].endswith("of 1 requests: 1 refused")
 
 
 def test_a_wrong_file_is_told_with_its_line(tmp_path: Path) -> None:
@@ -54,3 +55,41 @@ def test_a_wrong_file_is_told_with_its_line(tmp_path: Path) -> None:
     assert done.returncode == 2
     assert f"{wrong}:2: 'requests.0.go_to_room.place' must be text" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+HAPPENINGS = """
+requests:
+  - {kind: transport, name: mail, what: the mail, origin: F1/101, destination: F1/106}
+  - {kind: transport, name: cup, what: a cup, origin: F1/102, destination: F1/104}
+  - {kind: go_to_room, name: tour, place: F2/203}
+asked_s: {cup: 200, tour: 190}
+happenings:
+  - {kind: robot_fails, robot: robot1, at_s: 40, until_s: 400, reason: a wheel is stuck}
+  - {kind: nobody_answers, at_s: 150, until_s: 250}
+  - {kind: cancelled, request: tour, at_s: 195}
+"""
+
+
+@pytest.mark.slow(60)
+def test_others_fetch_what_a_robot_has_that_fails_and_silence_goes_up_the_ladder(
+    tmp_path: Path,
+) -> None:
+    building, scene = tmp_path / "office.yaml", tmp_path / "office_scene.yaml"
+    drawn = ("--seed", "5", "--floors", "2", "--rooms", "8")
+    subprocess.run([MEND, "building", "generate", *drawn, "-o", building], check=True)
+    subprocess.run([MEND, "building", "scene", building, "--robots", "2", "-o", scene], check=True)
+    requests, report = tmp_path / "requests.yaml", tmp_path / "shift.html"
+    requests.write_text(HAPPENINGS, encoding="utf-8")
+    exact = ("--option", "localizer=exact", "--option", "unmapped=0", "--option", "shut_doors=0")
+    helpers = ("--helper", "reception", "--helper", "caretaker")
+    done = run(tmp_path, str(scene), str(requests), *exact, *helpers, "--report", str(report))
+    assert done.returncode == 0, done.stdout + done.stderr
+    lines = [line[10:] for line in done.stdout.splitlines()]
+    assert "of 3 requests: 2 done, 1 cancelled" in lines
+    assert any(
+        line.startswith("operator took robot1") and "a wheel is stuck" in line for line in lines
+    )
+    assert any("'mail' is booked by robot2" in line or "robot2" in line for line in lines)
+    assert "'mail' is done" in lines
+    assert any(line.endswith("the question goes to caretaker") for line in lines)
+    assert "<svg" in report.read_text(encoding="utf-8")
