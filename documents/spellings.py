@@ -10,8 +10,11 @@ CAMERA = r"^[a-z][a-z0-9_]{0,31}$"
 PHRASE = r"^[a-z_]{1,32}$"
 SHA256 = r"^[0-9a-f]{64}$"
 SHORT_ID = r"^[0-9a-f]{8}$"
+CLOCK = r"^([01][0-9]|2[0-3]):[0-5][0-9]$"
+"""A time of the day."""
 
 SPELLINGS = {
+    CLOCK: "must be a time of the day, as 09:30",
     NODE: "must be the path of a node: '/', or '/0/2/1' by the numbers of the children",
     NAME: "must be a name: a letter, then at most 63 letters, digits, '_' or '-'",
     SEEN_CHARACTERS: "must have only characters that can be seen",

@@ -6,6 +6,7 @@ from uuid import UUID, uuid4
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from mend.documents.spellings import CLOCK
 from mend.fleet.asking.deadline import By, Deadline, minutes_left
 from mend.fleet.asking.understanding import AskedBack, understood
 from mend.fleet.requests import LAST_S, RequestKind
@@ -14,7 +15,6 @@ from mend.server.runtime.views import View
 if TYPE_CHECKING:
     from mend.server.fleets.fleet_at_work import FleetAtWork
 
-CLOCK = "^([01][0-9]|2[0-3]):[0-5][0-9]$"
 MOST_CHARACTERS = 500
 _SPEED_OF_DAYS = 1.0
 _NAME_DIGITS = 6

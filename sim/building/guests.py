@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mend.documents.strict_model import StrictModel
+from mend.maps.building.crossing import crossed_by
 from mend.sim.building.building_robot import PERIOD_S, BuildingRobot
 from mend.sim.building.bystander import RADIUS_M
 from mend.sim.building.door import WorldDoor, open_doors
@@ -233,6 +234,7 @@ class Guests:
             return
         if open_doors(around.doors, guest.at, time_s):
             return
+        _cut_off(guest, around.segments(guest.at.floor))
         slowed = (left_m - _FOLLOWS_M + 0.2) / _SLOWS_OVER_M
         goal = np.array(guest.trail[0])
         self._step(guest, goal, guest.speed_m_s * min(1.0, slowed), robot, around)
@@ -345,6 +347,17 @@ def _has_gone(guest: Guest, time_s: float) -> bool:
 
 def _is_at(at: FloorPose, place: FloorPose) -> bool:
     return at.floor == place.floor and math.dist((at.x, at.y), (place.x, place.y)) < _AT_PLACE_M
+
+
+def _cut_off(guest: Guest, segments: Matrix) -> None:
+    """Where the trail led past what is shut by now, as a cabin is, go on from where that ends."""
+    here = (guest.at.x, guest.at.y)
+    free = (
+        number
+        for number, point in enumerate(guest.trail)
+        if not len(crossed_by(np.array([*here, *point]), segments))
+    )
+    del guest.trail[: next(free, 0)]
 
 
 def _note_trail(guest: Guest, robot: BuildingRobot) -> None:

@@ -52,6 +52,8 @@ class Blocked(ArmMonitor[BlockedParameters]):
         Phase.UNLOAD,
         Phase.TELL,
         Phase.CHARGE,
+        Phase.MEET,
+        Phase.ARRIVE,
         Phase.CONFIRM,
     }
     reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
