@@ -66,16 +66,11 @@ class SimulatedClock:
         self._now = start
         self._offset = start
         self._world = world
-        # A world that others follow too has come far before anybody joins this run.
-        self._joined = world is None
 
     def now(self) -> float:
         return self._now
 
     def observe(self, robot_time: float) -> None:
-        if not self._joined:
-            # What a robot had still to say that was the site's until now may come first.
-            self.align(robot_time)
         if self._world is not None:
             self._world.heard(robot_time)
         self._now = max(self._now, robot_time + self._offset)
@@ -84,7 +79,6 @@ class SimulatedClock:
         if self._world is not None:
             robot_time = self._world.heard(robot_time)
         self._offset = self._now - robot_time
-        self._joined = True
 
     def to_robot(self, time: float) -> float:
         return time - self._offset

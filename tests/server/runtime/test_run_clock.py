@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pretend_service import pretend_service
 from task_documents import definition_of
 
-from mend.server.runtime.clock import SimulatedClock, WorldTime, has_come
+from mend.server.runtime.clock import SimulatedClock, has_come
 from mend.server.runtime.views import RunStatus
 from mend.sim.tabletop.layout import lay_out
 
@@ -50,17 +50,3 @@ async def test_promised_help_is_looked_for_whatever_the_robots_clock_says(
         ) as service:
             view, _ = await service.run_to_end(answers=["yes"])
     assert view.status is RunStatus.FINISHED
-
-
-def test_a_run_in_a_world_that_has_gone_on_for_long_begins_at_nothing_whatever_is_heard_first() -> (
-    None
-):
-    world = WorldTime()
-    world.heard(4000.0)
-    clock = SimulatedClock(world=world)
-    clock.observe(4001.5)
-    assert clock.now() == 0.0
-    clock.align(4001.0)
-    clock.observe(4003.5)
-    assert clock.now() == pytest.approx(2.0)
-    assert world.latest_s == 4003.5
