@@ -183,12 +183,16 @@ class WorldProcess:
             await asyncio.gather(watcher, return_exceptions=True)
         assert process.stdin is not None, "stdin is a pipe"
         process.stdin.close()
+        # Read to the end as well, as a pipe that was not is left open when the process has gone.
         try:
             async with asyncio.timeout(self._stop_s):
-                await process.wait()
+                await process.communicate()
         except TimeoutError:
             _kill(process)
             await process.wait()
+            with suppress(TimeoutError):
+                async with asyncio.timeout(self._stop_s):
+                    await process.communicate()
 
     async def _watch(self, process: Process, robots: Sequence[str]) -> None:
         complaints = asyncio.create_task(_last_line(process))

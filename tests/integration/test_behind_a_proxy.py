@@ -1,13 +1,24 @@
 """Forwarded headers count where they come from a configured proxy, and nowhere else."""
 
+from contextlib import AbstractAsyncContextManager
+
 import httpx
 import pytest
-from service_under_test import TOKEN, serving
+from service_under_test import TOKEN, ServiceUnderTest, serving
 
 from mend.server.limits import Limits
 
 LIMITS = Limits(wrong_tokens=1)
 PROXY = ["127.0.0.0/8"]
+
+
+def standing_clock() -> float:
+    """However slow the machine is, nobody has waited long enough."""
+    return 1_000_000.0
+
+
+def serving_guarded(proxies: list[str]) -> AbstractAsyncContextManager[ServiceUnderTest]:
+    return serving(token=TOKEN, limits=LIMITS, trusted_proxies=proxies, wall_time_s=standing_clock)
 
 
 def forwarded(client: str, scheme: str = "https") -> dict[str, str]:
@@ -20,7 +31,7 @@ def shows(token: str, client: str) -> dict[str, str]:
 
 async def test_wrong_tokens_are_counted_by_the_client_behind_a_trusted_proxy() -> None:
     async with (
-        serving(token=TOKEN, limits=LIMITS, trusted_proxies=PROXY) as service,
+        serving_guarded(PROXY) as service,
         httpx.AsyncClient(base_url=service.url) as proxy,
     ):
         for number in range(2):
@@ -37,7 +48,7 @@ async def test_wrong_tokens_are_counted_by_the_client_behind_a_trusted_proxy() -
 
 async def test_nobody_else_can_say_where_they_come_from() -> None:
     async with (
-        serving(token=TOKEN, limits=LIMITS, trusted_proxies=["192.0.2.1"]) as service,
+        serving_guarded(["192.0.2.1"]) as service,
         httpx.AsyncClient(base_url=service.url) as client,
     ):
         for number in range(2):
@@ -83,7 +94,7 @@ async def test_whoever_has_many_addresses_of_one_kind_is_one_guesser(
     guessers: list[str], same: str, other: str
 ) -> None:
     async with (
-        serving(token=TOKEN, limits=LIMITS, trusted_proxies=PROXY) as service,
+        serving_guarded(PROXY) as service,
         httpx.AsyncClient(base_url=service.url) as proxy,
     ):
         for number, address in enumerate(guessers):

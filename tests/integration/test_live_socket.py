@@ -233,8 +233,10 @@ async def test_a_whole_run_is_watched_and_replayed(tmp_path: Path) -> None:
             assert {len(each) for each in kept} == {76 + 32 * objects}
             first, last = replay.headers["mend-poses-span"].split()
             assert float(last) > float(first) >= 0.0
-            span = await client.get(f"/api/runs/{run.id}/poses?from_s=2&to_s=3")
-            assert 3 <= len(list(unframed(span.content))) <= 21
+            from_s, to_s = (time_of(kept[len(kept) * part // 4]) for part in (1, 3))
+            span = await client.get(f"/api/runs/{run.id}/poses?from_s={from_s}&to_s={to_s}")
+            inside = [each for each in kept if from_s <= time_of(each) <= to_s]
+            assert list(unframed(span.content)) == inside
             assert (await client.get(f"/api/runs/{run.id}/layout")).json() == layout
         held = [
             struct.unpack_from("<I", each, 76 + 32 * i + 28)[0] & 1
