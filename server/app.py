@@ -29,6 +29,7 @@ from mend.server.api import (
     speech,
     speech_socket,
 )
+from mend.server.api import fleet as fleet_api
 from mend.server.api import models as models_api
 from mend.server.api import poses as poses_api
 from mend.server.api import principals as principals_api
@@ -64,6 +65,7 @@ ROUTES = (
     worlds_api,
     sites_api,
     requests_api,
+    fleet_api,
     runs,
     leaves,
     poses_api,
