@@ -187,7 +187,7 @@ async def _open(
         poses=poses,
         refusals=refusals,
     )
-    fleets = Fleets(sites, runtime, journal, utc_now=lambda: datetime.now(UTC))
+    fleets = Fleets(sites, runtime, journal, poses, utc_now=lambda: datetime.now(UTC))
     speech = _speech(settings)
     app = create_app(
         runtime,

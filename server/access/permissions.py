@@ -59,6 +59,7 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     Endpoint("open_site", "POST", "/api/sites", Role.OPERATOR),
     Endpoint("close_site", "DELETE", _SITE, Role.OPERATOR),
     Endpoint("get_fleet", "GET", _SITE + "/fleet", Role.VIEWER),
+    Endpoint("get_fleet_poses", "GET", _SITE + "/fleet/poses", Role.VIEWER),
     Endpoint("get_asked_robot", "GET", _FLEET_ROBOT + "/asking", Role.VIEWER),
     Endpoint("take_robot_out", "POST", _FLEET_ROBOT + "/out_of_service", Role.OPERATOR),
     Endpoint("put_robot_back", "POST", _FLEET_ROBOT + "/back_in_service", Role.OPERATOR),

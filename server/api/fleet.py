@@ -1,10 +1,12 @@
 """The fleet of a site over REST: what its robots are at, and what operators have them do."""
 
+import math
 from functools import partial
 from typing import Annotated
 
-from fastapi import APIRouter, Body, Path
+from fastapi import APIRouter, Body, Path, Response
 
+from mend.server.api.poses import FRAMES, MOST_FRAMES, MostFrames, Seconds, frames_answer
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
 from mend.server.api.services import SiteId, WithCaller, WithServices
@@ -26,6 +28,25 @@ async def get_fleet(site: SiteId, services: WithServices) -> FleetView:
     """What the robots of a site are still to do, and why their plan has become what it is."""
     fleet = await services.fleets.fleet(site)
     return await fleet.read(partial(FleetView.of, fleet))
+
+
+@router.get(
+    "/poses",
+    operation_id="get_fleet_poses",
+    response_class=Response,
+    responses=FRAMES | documented(401, 404, 409, 421, 422, 500),
+)
+async def get_fleet_poses(
+    site: SiteId,
+    services: WithServices,
+    from_s: Seconds = 0.0,
+    to_s: Seconds | None = None,
+    limit: MostFrames = MOST_FRAMES,
+) -> Response:
+    """Where its robots were in a span of the site's clock, in the order of `get_fleet`."""
+    await services.fleets.fleet(site)
+    until_s = math.inf if to_s is None else to_s
+    return frames_answer(await services.poses.recorded(site, from_s, until_s, limit))
 
 
 @router.get(

@@ -1,7 +1,7 @@
 """Recorded poses of runs, for replay."""
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Response
 
@@ -10,12 +10,28 @@ from mend.server.api.problems import documented
 from mend.server.api.services import RunId, WithServices
 from mend.server.poses.frame import framed
 from mend.server.poses.layout import Layout
+from mend.server.poses.record import RecordedPoses
 
 router = APIRouter(prefix="/api/runs", tags=["runs"])
 
 SPAN_HEADER = "Mend-Poses-Span"
 MOST_FRAMES = 20_000
 
+FRAMES: dict[int | str, dict[str, Any]] = {
+    200: {
+        "content": {"application/octet-stream": {}},
+        "description": "Frames, each after its length in bytes (uint32, little endian).",
+        "headers": {
+            SPAN_HEADER: {
+                "description": "The first and the last time of which anything is recorded.",
+                "schema": {"type": "string"},
+            }
+        },
+    }
+}
+"""What an answer of frames is, as documented."""
+
+MostFrames = Annotated[int, Query(ge=1, le=MOST_FRAMES)]
 Seconds = Annotated[float, Query(ge=0.0, le=1e9, allow_inf_nan=False)]
 
 
@@ -35,31 +51,23 @@ async def get_layout(run: RunId, services: WithServices) -> Layout:
     "/{run}/poses",
     operation_id="get_poses",
     response_class=Response,
-    responses={
-        200: {
-            "content": {"application/octet-stream": {}},
-            "description": "Frames, each after its length in bytes (uint32, little endian).",
-            "headers": {
-                SPAN_HEADER: {
-                    "description": "The first and the last recorded time of the run.",
-                    "schema": {"type": "string"},
-                }
-            },
-        },
-        **documented(401, 404, 421, 422, 500),
-    },
+    responses=FRAMES | documented(401, 404, 421, 422, 500),
 )
 async def get_poses(
     run: RunId,
     services: WithServices,
     from_s: Seconds = 0.0,
     to_s: Seconds | None = None,
-    limit: Annotated[int, Query(ge=1, le=MOST_FRAMES)] = MOST_FRAMES,
+    limit: MostFrames = MOST_FRAMES,
 ) -> Response:
     """The recorded frames of a span of the run's clock, evenly thinned out to `limit`."""
     await services.runs.run_summary(run)
     until_s = math.inf if to_s is None else to_s
-    recorded = await services.poses.recorded(run, from_s, until_s, limit)
+    return frames_answer(await services.poses.recorded(run, from_s, until_s, limit))
+
+
+def frames_answer(recorded: RecordedPoses) -> Response:
+    """Recorded frames as an answer."""
     headers = {"Cache-Control": "no-store"}
     if recorded.span_s is not None:
         headers[SPAN_HEADER] = " ".join(f"{each:.3f}" for each in recorded.span_s)

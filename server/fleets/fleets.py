@@ -2,19 +2,24 @@
 
 import asyncio
 import logging
+import math
 from collections.abc import Callable
 from datetime import datetime
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 from uuid import UUID
 
 from pydantic import ValidationError
 
 from mend.errors import ConflictError, NotFoundError
 from mend.fleet.requests import STATUS
+from mend.server.fleets.fleet_track import FleetTrack
 from mend.server.fleets.runs import Runs
 from mend.server.journal.events import Author
 from mend.server.journal.journal import Document, Entry, Journal
+from mend.server.poses.frame import Frame, time_of
+from mend.server.poses.record import PoseRecord
+from mend.server.sites.site import Site
 from mend.server.sites.site_record import SiteRecord
 from mend.server.sites.sites import Sites
 
@@ -29,15 +34,32 @@ KIND = "fleet"
 """The kind of document that the journal keeps fleets as; its name is the site's id."""
 
 
+class SiteRecords(Protocol):
+    """Where frames of sites are recorded."""
+
+    def record(self, site: UUID) -> PoseRecord | None: ...
+
+    async def last(self, site: UUID, /) -> Frame | None: ...
+
+    def forget(self, site: UUID, /) -> None: ...
+
+
 class Fleets:
     """What people ask of the fleets of a service. Raises the errors of `mend.errors`."""
 
     def __init__(
-        self, sites: Sites, runs: Runs, journal: Journal, *, utc_now: Callable[[], datetime]
+        self,
+        sites: Sites,
+        runs: Runs,
+        journal: Journal,
+        poses: SiteRecords,
+        *,
+        utc_now: Callable[[], datetime],
     ) -> None:
         self._sites = sites
         self._runs = runs
         self._journal = journal
+        self._poses = poses
         self._utc_now = utc_now
         self._fleets: dict[UUID, FleetAtWork] = {}
         self._loading = asyncio.Lock()
@@ -75,6 +97,8 @@ class Fleets:
                 f"robot '{errand.robot}' of site {site} is on its way to {errand.place}: wait"
             )
         await self._fleets.pop(site).stop()
+        self._sites.site(site).follow_bases(None)
+        self._poses.forget(site)
         await self._journal.append(Entry(document=Document(KIND, str(site), None)))
 
     async def _of(self, site: UUID | None) -> "FleetAtWork":
@@ -108,7 +132,16 @@ class Fleets:
             site = self._sites.site(record.site)
             fleet = self._opener(site, record, kept, self._runs, self._journal, self._utc_now)
             self._fleets[record.site] = fleet
+            await self._record(site)
             fleet.start()
+
+    async def _record(self, site: Site) -> None:
+        """Keep where its robots are from now on, if that is to be kept."""
+        last = await self._poses.last(site.id)
+        record = self._poses.record(site.id)
+        if record is not None:
+            since_s = -math.inf if last is None else time_of(last)
+            site.follow_bases(FleetTrack(site.frames, record, since_s).take)
 
     # --- What people ask ----------------------------------------------------------------------
 

@@ -240,8 +240,9 @@ class PoseFeed:
             self._records.close(run)
 
     def forget(self, run: UUID) -> None:
-        """Delete what was recorded of a run that is over."""
+        """Delete what was recorded of a run that is over, or of a site that is closed."""
         if self._records is not None:
+            self._records.close(run)
             self._records.forget(run)
 
     def of(self, run: UUID) -> RunPoses | None:
@@ -259,6 +260,10 @@ class PoseFeed:
         if self._records is None:
             return RecordedPoses([], None)
         return await self._records.read(run, from_s, to_s, limit)
+
+    def record(self, site: UUID) -> PoseRecord | None:
+        """The record to which frames of a site are added, if any are kept."""
+        return None if self._records is None else self._records.open(site)
 
     async def last(self, run: UUID) -> Frame | None:
         """The last recorded frame of a run."""

@@ -37,7 +37,7 @@ from mend.server.robots.session import (
     RobotSession,
     TooManyReportsError,
 )
-from mend.server.robots.sink import RobotSink
+from mend.server.robots.sink import FollowPoses, RobotSink
 from mend.server.robots.times import LinkTimes
 
 log = logging.getLogger(__name__)
@@ -83,6 +83,7 @@ class KnownRobot:
         self._refused: tuple[str, str] | None = None
         self._unasked_reports = self._new_boots = 0
         self._poses_hz = self._always_hz = 0.0
+        self.follow_poses: FollowPoses | None = None
         self.poses: Poses | None = None
         """The newest of this start of its program."""
         self._absence: asyncio.TimerHandle | None = None
@@ -339,6 +340,8 @@ class KnownRobot:
 
     def receive_poses(self, poses: Poses) -> None:
         self.poses = poses
+        if self.follow_poses is not None:
+            self.follow_poses(self.name, poses)
         if self._sink is not None and self._sink_sees_it:
             self._sink.robot_posed(self.name, poses)
 

@@ -20,7 +20,7 @@ from mend.server.robots.known_robot import KnownRobot, ReplacedError
 from mend.server.robots.paced_channel import PacedChannel
 from mend.server.robots.passes import Anyone, Pass
 from mend.server.robots.session import NoSenseError, RobotSession, read_message, sentence
-from mend.server.robots.sink import RobotSink
+from mend.server.robots.sink import FollowPoses, RobotSink
 from mend.server.robots.times import LinkTimes
 
 __all__ = ["RobotRegistry", "RobotSink"]
@@ -91,6 +91,10 @@ class RobotRegistry:
     def always_show_poses(self, robot: str, rate_hz: float) -> None:
         """Have a robot send them at least so often, whether or not a run wants them."""
         self._known(robot).always_show_poses(rate_hz)
+
+    def follow_poses(self, robot: str, follow: FollowPoses | None) -> None:
+        """Have it told of poses of a robot as they come, whoever has that."""
+        self._known(robot).follow_poses = follow
 
     def poses(self, robot: str) -> Poses | None:
         """The newest poses of a robot that sends any."""

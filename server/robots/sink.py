@@ -1,9 +1,13 @@
 """Who gets to know what a robot does: the run that owns it."""
 
+from collections.abc import Callable
 from typing import Protocol
 
 from mend.robots.link.messages import Hello, Poses, Report
 from mend.server.journal.journal import Receipt
+
+FollowPoses = Callable[[str, Poses], None]
+"""Told of each robot's poses as they come."""
 
 
 class RobotSink(Protocol):

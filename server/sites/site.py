@@ -11,6 +11,7 @@ from mend.robots.link.messages import Avoid, ClosedWay, Held, Hello, Holding, Po
 from mend.server.journal.journal import Entry, Journal, Receipt
 from mend.server.poses.bases import SeenBase, in_scene
 from mend.server.robots.registry import RobotRegistry
+from mend.server.robots.sink import FollowPoses
 from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
 from mend.server.runtime.team import Neighbour
 from mend.server.sites.odometer import Odometer
@@ -97,6 +98,16 @@ class Site:
         """Have its robots say where they are, also those that no run has."""
         for robot in self._frames:
             self._registry.always_show_poses(robot, BASES_HZ)
+
+    def follow_bases(self, follow: FollowPoses | None) -> None:
+        """Have it told whenever a robot says where it is, in the frame of that robot."""
+        for robot in self._frames:
+            self._registry.follow_poses(robot, follow)
+
+    @property
+    def frames(self) -> Mapping[str, Frame]:
+        """In which each robot says where it is, in the scene's."""
+        return self._frames
 
     @property
     def shown_s(self) -> float:

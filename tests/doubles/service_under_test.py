@@ -133,7 +133,7 @@ def build(
         scenarios=library.scenarios,
         worlds=FakeWorlds(),
         sites=sites,
-        fleets=Fleets(sites, runs, journal, utc_now=utc_now),
+        fleets=Fleets(sites, runs, journal, poses, utc_now=utc_now),
         models=RobotModels(models),
         poses=poses,
         access=access,

@@ -152,15 +152,20 @@ async def test_the_past_shows_what_is_kept_of_it_and_says_what_is_not(
     await expect(requests).to_contain_text("Bring the blue parcel from F1/101 to F1/106")
     await expect(requests.get_by_text("Under way")).to_be_visible()
     await expect(requests.get_by_role("button")).to_have_count(0)
-    await expect(page.get_by_text("Where robots were at that moment")).to_be_visible()
-    await expect(page.locator(".plan-robot:visible")).to_have_count(0)
+    await expect(page.get_by_text("Which ways were closed at that moment is not")).to_be_visible()
+    robot = page.locator(".plan-robot[data-robot^=robot1]")
+    await expect(robot).to_be_visible()
+    at_first = await robot.get_attribute("transform")
+    await page.get_by_label("Moment of the building").fill("600")
+    await expect(robot).not_to_have_attribute("transform", at_first or "")
+    await page.get_by_label("Moment of the building").fill("1")
     await expect(page.get_by_text("What was planned at that moment is not kept")).to_be_visible()
     told = lane(page, "ROBOT1").filter(has_text="tells lunch at F1 103")
     await expect(lane(page, "ROBOT1")).to_have_count(1)
     await expect(told).to_have_count(0)
     await page.get_by_role("button", name="Back to live").click()
     await expect(told).to_have_count(1)
-    await expect(page.get_by_text("Where robots were at that moment")).to_be_hidden()
+    await expect(page.get_by_text("Which ways were closed at that moment is")).to_be_hidden()
 
 
 async def test_what_its_robots_ask_is_answered_there(service: Service, open_page: OpenPage) -> None:

@@ -2,7 +2,8 @@
 import { describe, expect, it } from "vitest";
 import { likelyEllipse } from "../src/building/likely_ellipse";
 import { planOf } from "../src/building/plan";
-import { fleetAtWork, standingsOf } from "../src/fleet/fleet_robots";
+import { type FleetEvent, legsAfter } from "../src/fleet/fleet_past";
+import { fleetAtWork, fleetAtWorkThen, standingsOf } from "../src/fleet/fleet_robots";
 import { closedInWords, isAtInWords, sureInWords } from "../src/fleet/fleet_words";
 import { closedWay, sameWay } from "../src/fleet/picked";
 import type { FleetRobot, FleetView } from "../src/wire/types";
@@ -46,6 +47,18 @@ describe("robots of a fleet", () => {
     expect(isAtInWords(robot({ out_of_service: "a squeak", works: false }))).toBe("is out of service: a squeak");
     expect(isAtInWords(robot({ works: false }))).toBe("does not work");
     expect(isAtInWords(robot())).toBe("has nothing to do");
+  });
+
+  it("were at what had begun and not ended at that moment", () => {
+    const begun = { type: "leg_begun", robot: ONE, place: "F2/204", action: "collect", booking: "tea" };
+    const sent = { type: "errand_begun", robot: "robot2", place: "F1/101" };
+    const events = [begun, sent, { ...begun, type: "leg_ended" }] as unknown as FleetEvent[];
+    const then = legsAfter(events.slice(0, 2));
+    expect([...then]).toEqual([[ONE, at_work], ["robot2", { place: "F1/101", action: null, request: null }]]);
+    expect([...legsAfter(events).keys()]).toEqual(["robot2"]);
+    const [working] = fleetAtWorkThen(fleet(robot({ connected: false })), plan, then);
+    expect(working).toMatchObject({ task: "working", leaf: "tea", goal: { name: "204" }, lost: false });
+    expect(fleetAtWorkThen(fleet(robot({ at_work })), plan, new Map())[0]).toMatchObject({ task: "idle", goal: null });
   });
 
   it("are as sure of their place as an ellipse is long, in which they are 95 times of 100", () => {

@@ -16,18 +16,18 @@ import { usePlaying } from "../run/use_playing";
 import * as rest from "../wire/rest";
 import type { FleetView, RequestView, SiteView } from "../wire/types";
 import { FleetChart } from "./fleet_chart";
-import { eventsUntil, type FleetEvent, requestsAfter } from "./fleet_past";
+import { eventsUntil, type FleetEvent, legsAfter, requestsAfter } from "./fleet_past";
 import { FleetPlan } from "./fleet_plan";
 import { askingOf, FleetQuestions } from "./fleet_questions";
-import { fleetAtWork, standingsOf } from "./fleet_robots";
+import { fleetAtWork, fleetAtWorkThen, standingsOf } from "./fleet_robots";
 import type { Picked } from "./picked";
 import { RobotsList } from "./robots_list";
+import { usePastStandings } from "./use_past_standings";
 import { useSiteEvents } from "./use_site_events";
 import { WaysPanel } from "./ways_panel";
 import "./fleet.css";
 
 const AGAIN_MS = 1_000;
-const NOWHERE: ReadonlyMap<string, Standing> = new Map();
 
 export function FleetPage({ site }: { site: string | null }) {
   const sites = fleets.value;
@@ -114,9 +114,13 @@ function Shown({ site, fleet, events, requests, plan, moment, again }: ShownProp
   const newest = moment.newest.value;
   const [picked, setPicked] = useState<Picked>(null);
   const names = fleet.robots.map(({ robot }) => robot);
-  const positions = useStandings(fleet);
-  const robots = fleetAtWork(fleet, plan, askingOf(names));
-  const seen = seenRobots(robots, robots.map(({ robot }) => positions.get(robot) ?? null), { plan, past: false, atLeast: false });
+  const live = useStandings(fleet);
+  const then = usePastStandings(site.id, names, moment);
+  const positions = newest ? live : then;
+  const robots = newest
+    ? fleetAtWork(fleet, plan, askingOf(names))
+    : fleetAtWorkThen(fleet, plan, legsAfter(eventsUntil(events, moment.time.value)));
+  const seen = seenRobots(robots, robots.map(({ robot }) => positions.get(robot) ?? null), { plan, past: !newest, atLeast: false });
   const [floor, setFloor] = useFloor(plan, seen);
   const show = (robot: string) => {
     const there = plan.floors.find(({ name }) => name === seen.find((each) => each.robot === robot)?.floor);
@@ -127,12 +131,12 @@ function Shown({ site, fleet, events, requests, plan, moment, again }: ShownProp
       {newest && <FleetQuestions robots={names} />}
       <div class="fleet-columns">
         <FleetPlan
-          {...{ plan, robots, seen, picked, floor }}
-          positions={newest ? positions : NOWHERE}
+          {...{ plan, robots, seen, picked, floor, positions }}
+          live={newest}
           closed={newest ? fleet.closed : []}
           onPick={setPicked}
           onFloor={(next: PlanFloor) => setFloor(next)}
-          state={newest ? "" : "Where robots were at that moment, and which ways were closed, is not kept: the plan shows neither."}
+          state={newest ? "" : pastInWords(positions.size > 0)}
         />
         {newest && (
           <div class="fleet-side">
@@ -146,6 +150,11 @@ function Shown({ site, fleet, events, requests, plan, moment, again }: ShownProp
       <Scrubber of="the building" moment={moment} going onStep={(direction) => step(events, moment, direction)} />
     </>
   );
+}
+
+/** What the plan does not show of a moment of the past. */
+function pastInWords(known: boolean): string {
+  return known ? "Which ways were closed at that moment is not shown." : "Where robots were at that moment was not recorded.";
 }
 
 /** Where robots are, and whether they have moved since the last reading. */

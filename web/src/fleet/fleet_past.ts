@@ -1,5 +1,5 @@
 // What is known of a fleet at a moment of its past, folded from its events.
-import type { Event, RequestStatus, RequestView } from "../wire/types";
+import type { Event, FleetLeg, LegAction, RequestStatus, RequestView } from "../wire/types";
 
 export type FleetEvent = Extract<Event, { at_s: number }>;
 
@@ -22,4 +22,23 @@ export function requestsAfter(events: readonly FleetEvent[]): readonly RequestVi
     requests.set(name, { name, site, what, status: event.status as RequestStatus, reason, expected });
   }
   return [...requests.values()];
+}
+
+/** What each robot was at, after the last of these events; robots that were at nothing are not there. */
+export function legsAfter(events: readonly FleetEvent[]): ReadonlyMap<string, FleetLeg> {
+  const legs = new Map<string, FleetLeg>();
+  for (const event of events) {
+    switch (event.type) {
+      case "leg_begun":
+        legs.set(event.robot, { place: event.place, action: event.action as LegAction, request: event.booking });
+        break;
+      case "errand_begun":
+        legs.set(event.robot, { place: event.place, action: null, request: null });
+        break;
+      case "leg_ended":
+      case "errand_ended":
+        legs.delete(event.robot);
+    }
+  }
+  return legs;
 }

@@ -16,6 +16,8 @@ interface FleetPlanProps {
   robots: readonly AtWork[];
   seen: readonly SeenRobot[];
   positions: Positions;
+  /** Whether they are as they are read now. */
+  live: boolean;
   closed: readonly ClosedWayView[];
   picked: Picked;
   onPick(picked: Picked): void;
@@ -27,9 +29,9 @@ interface FleetPlanProps {
 }
 
 export function FleetPlan(props: FleetPlanProps) {
-  const { plan, robots, seen, positions, closed, picked, onPick, state, floor, onFloor } = props;
+  const { plan, robots, seen, positions, live, closed, picked, onPick, state, floor, onFloor } = props;
   const marks = useRef<Marks>(null);
-  useGliding(positions, (now) => marks.current?.draw(now));
+  useGliding(positions, live, (now) => marks.current?.draw(now));
   const view = useFloorView(floor);
   const { sight, size } = view;
   const here = useMemo(() => robots.filter(({ robot }) => positions.has(robot)), [robots, positions]);

@@ -3,27 +3,30 @@ import type { AtWork, Goal } from "../building/at_work";
 import { type Plan, placeOf } from "../building/plan";
 import type { Standing } from "../building/standing";
 import { robotName } from "../question/fault_words";
-import type { FleetRobot, FleetView } from "../wire/types";
+import type { FleetLeg, FleetView } from "../wire/types";
 
 /** What robots were last heard of so long ago (the site's clock, s), while they are at work, is old. */
-const OLD_S = 10;
+export const OLD_S = 10;
 const MOVED_M = 0.05;
 
 export type Asking = ReadonlyMap<string, "asking" | "helped">;
 
 export function fleetAtWork(fleet: FleetView, plan: Plan, asking: Asking): readonly AtWork[] {
-  return fleet.robots.map((robot) => ({
-    robot: robot.robot,
-    name: robotName(robot.robot),
-    task: asking.get(robot.robot) ?? (robot.at_work === null ? "idle" : "working"),
-    leaf: robot.at_work?.request ?? null,
-    goal: goalOf(robot, plan),
-    lost: !robot.connected,
-  }));
+  return fleet.robots.map(({ robot, at_work, connected }) => atWork(robot, at_work, plan, asking.get(robot), !connected));
 }
 
-function goalOf({ at_work }: FleetRobot, plan: Plan): Goal | null {
-  const place = at_work === null ? null : placeOf(plan, at_work.place);
+/** What robots were at in the past; whom they asked then their runs tell. */
+export function fleetAtWorkThen(fleet: FleetView, plan: Plan, legs: ReadonlyMap<string, FleetLeg>): readonly AtWork[] {
+  return fleet.robots.map(({ robot }) => atWork(robot, legs.get(robot) ?? null, plan, undefined, false));
+}
+
+function atWork(robot: string, leg: FleetLeg | null, plan: Plan, asks: "asking" | "helped" | undefined, lost: boolean): AtWork {
+  const task = asks ?? (leg === null ? "idle" : "working");
+  return { robot, name: robotName(robot), task, leaf: leg?.request ?? null, goal: goalOf(leg, plan), lost };
+}
+
+function goalOf(leg: FleetLeg | null, plan: Plan): Goal | null {
+  const place = leg === null ? null : placeOf(plan, leg.place);
   return place === null ? null : { x: place.x, y: place.y, z: place.z, name: place.name, floor: place.floor };
 }
 

@@ -6,17 +6,18 @@ const GLIDE_MS = 900;
 /** Who has come farther than this is drawn there at once: the way between may lead round something. */
 const FARTHEST_M = 2.5;
 
-export function useGliding(positions: Positions, draw: (positions: Positions) => void): void {
+/** What is not `live` has the places between as well. */
+export function useGliding(positions: Positions, live: boolean, draw: (positions: Positions) => void): void {
   const shown = useRef<Positions>(new Map());
   const show = useRef(draw);
   show.current = draw;
   useEffect(() => {
     const from = shown.current;
     const began = performance.now();
-    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const atOnce = !live || matchMedia("(prefers-reduced-motion: reduce)").matches;
     let frame = 0;
     const pass = (now: number) => {
-      const share = calm ? 1 : Math.min(1, Math.max(0, (now - began) / GLIDE_MS));
+      const share = atOnce ? 1 : Math.min(1, Math.max(0, (now - began) / GLIDE_MS));
       shown.current = between(from, positions, share);
       show.current(shown.current);
       if (share < 1) frame = requestAnimationFrame(pass);

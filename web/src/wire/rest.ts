@@ -221,8 +221,12 @@ export const layout = (run: string) => call<Layout>("GET", `/api/runs/${segment(
 const SPAN_HEADER = "Mend-Poses-Span";
 
 /** The frames recorded from one time of the run to another, and the first and last times recorded. */
-export async function poses(run: string, from: number, to: number) {
-  const response = await read(`/api/runs/${segment(run)}/poses?from_s=${from}&to_s=${to}`);
+export const poses = (run: string, from: number, to: number) => frames(`/api/runs/${segment(run)}/poses`, from, to);
+
+export const fleetPoses = (site: string, from: number, to: number) => frames(`/api/sites/${segment(site)}/fleet/poses`, from, to);
+
+async function frames(path: string, from: number, to: number) {
+  const response = await read(`${path}?from_s=${from}&to_s=${to}`);
   const [first, last] = response.headers.get(SPAN_HEADER)?.split(" ").map(Number) ?? [];
   const recorded: readonly [number, number] | null =
     first === undefined || last === undefined ? null : [first, last];
