@@ -5,6 +5,7 @@ import re
 import pytest
 from console_in_browser import OpenPage
 from console_situations import begin_two_boxes, taken_leaf
+from hearing_browser import give_ear
 from playwright.async_api import Locator, Page, expect
 from two_boxes import BLUE
 
@@ -64,3 +65,18 @@ async def test_words_that_are_not_understood_are_answered_with_what_to_say(
     await page.get_by_label("Choose a leaf that waits, or say it").fill("make coffee")
     await page.keyboard.press("Enter")
     await expect(page.get_by_text("say 'I do the ...'")).to_be_visible()
+
+
+async def test_a_leaf_is_taken_and_given_back_by_voice(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await open_page(f"/runs/{await begin_two_boxes(service)}")
+    await give_ear(page, ["perhaps", "I do the blue box.", "I give the blue box back"])
+    await page.reload()
+    await page.get_by_role("button", name="Speak").click()
+    await expect(page.get_by_text("say 'I do the ...'")).to_be_visible()
+    await page.get_by_role("button", name="Speak").click()
+    await expect(page.get_by_text(re.compile("You are doing blue box, until"))).to_be_visible()
+    await page.get_by_role("button", name="Speak").click()
+    await expect(page.get_by_text("You have given blue box back.")).to_be_visible()
+    await expect(blue_box(page)).not_to_have_attribute("data-state", "done")

@@ -1,9 +1,8 @@
 """Somebody stands at a robot's touch screen, asks it for something, and follows that."""
 
-import json
-
 import pytest
 from console_in_browser import OpenPage, settle
+from hearing_browser import give_ear
 from office_with_fleet import open_office_with_fleet
 from playwright.async_api import Page, ViewportSize, expect
 from test_accessibility import PHONE, RULES, load_axe, violations
@@ -95,31 +94,13 @@ async def test_what_is_said_in_words_is_asked_back_read_back_and_done(
     await expect(mine).to_contain_text("Tell “lunch is ready” at F2 203")
 
 
-# A browser that recognizes speech on its device: each time it hears the next of these.
-EAR = """(said) => {
-    window.SpeechRecognition = class extends EventTarget {
-        static available({ processLocally }) {
-            return Promise.resolve(processLocally ? "available" : "unavailable");
-        }
-        start() {
-            if (!this.processLocally) throw new Error("what is said leaves the device");
-            const transcript = said.shift();
-            const heard = Object.assign(new Event("result"), { results: [[{ transcript }]] });
-            if (transcript !== "") this.dispatchEvent(heard);
-            this.dispatchEvent(new Event("end"));
-        }
-        abort() {}
-    };
-}"""
-
-
 async def test_what_is_spoken_is_read_back_and_confirmed_by_voice(
     service: Service, open_page: OpenPage
 ) -> None:
     page = await at_robot(service, open_page, floors=2)
     await expect(page.get_by_role("button", name="Speak")).to_be_hidden()
     said = ["", "come to two oh three", "perhaps", "Yes."]
-    await page.add_init_script(f"({EAR})({json.dumps(said)})")
+    await give_ear(page, said)
     await page.reload()
     await press(page, "Speak")
     await expect(page.get_by_text("I have heard nothing")).to_be_visible()

@@ -1,7 +1,7 @@
 // What is read back to somebody, who says whether it is right.
 import { useEffect, useRef, useState } from "preact/hooks";
 
-import { SpeakButton } from "./speak_button";
+import { SpeakButton } from "../speech/speak_button";
 
 const YES = ["yes", "yes please", "yes that is right", "yes that's right", "that is right", "that's right", "right"];
 const NO = ["no", "no thank you", "no thanks", "no that is wrong", "no that's wrong", "that is wrong", "wrong"];

@@ -1,7 +1,7 @@
 // Asking in words: what was understood is read back, and asked for once somebody has said yes.
 import { useId, useState } from "preact/hooks";
 import * as rest from "../wire/rest";
-import { SpeakButton } from "./speak_button";
+import { SpeakButton } from "../speech/speak_button";
 import type { RequestDocument } from "./use_asking";
 import { timeOf } from "./when";
 

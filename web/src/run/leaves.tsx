@@ -1,5 +1,6 @@
 // Leaves that people do themselves: taking one, saying so in words, and giving it back.
 import { useState } from "preact/hooks";
+import { SpeakButton } from "../speech/speak_button";
 import { may, whyNot } from "../state/access";
 import { helperName } from "../state/preferences";
 import { plain } from "../tree/words";
@@ -69,13 +70,18 @@ export function Leaves({ run, people, selected, example, going }: LeavesProps) {
 /** Resolves with whether it was done. */
 function Words({ busy, example, say }: { busy: boolean; example: string; say(words: string): Promise<boolean> }) {
   const [words, setWords] = useState("");
-  const submit = async (event: SubmitEvent) => {
-    event.preventDefault();
+  const tell = async (told: string) => {
     // What is being typed by then is something else.
-    if (await say(words)) setWords((now) => (now === words ? "" : now));
+    if (await say(told)) setWords((now) => (now === told ? "" : now));
   };
   return (
-    <form class="leaf-words" onSubmit={(event) => void submit(event)}>
+    <form
+      class="leaf-words"
+      onSubmit={(event) => {
+        event.preventDefault();
+        void tell(words);
+      }}
+    >
       <label class="small" for="leaf-words">
         Choose a leaf that waits, or say it: “I do the {example}”, “I give the {example} back”
       </label>
@@ -91,6 +97,13 @@ function Words({ busy, example, say }: { busy: boolean; example: string; say(wor
         <button class="button" disabled={busy || words.trim() === ""}>
           Say it
         </button>
+        <SpeakButton
+          label="Speak"
+          heard={(said) => {
+            setWords(said);
+            void tell(said);
+          }}
+        />
       </div>
     </form>
   );

@@ -1,6 +1,6 @@
 // A button to say something; it is there where the browser recognizes speech on this device.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { canHear, hear } from "../speech/browser_ear";
+import { canHear, hear } from "./browser_ear";
 
 interface SpeakButtonProps {
   label: string;
