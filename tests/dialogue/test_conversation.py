@@ -30,6 +30,10 @@ CALLS: dict[str, Call] = {
     "seen": lambda conversation: conversation.help_seen(Change.MOVED),
     "seen as before": lambda conversation: conversation.help_seen(Change.NONE),
     "seen, not before": lambda conversation: conversation.help_seen(Change.UNKNOWN),
+    "seen at place": lambda conversation: conversation.help_seen(Change.MOVED, at_place=True),
+    "seen at place, as before": lambda conversation: conversation.help_seen(
+        Change.NONE, at_place=True
+    ),
     "not seen": Conversation.help_not_seen,
     "at place": lambda conversation: conversation.put_right(
         PutRight(Expectation.AT_PLACE, Change.MOVED)
@@ -114,6 +118,21 @@ def test_a_lost_part_is_put_back_or_placed_by_the_helper_or_tried_again_later(
     kind: str, calls: list[str], close: Close
 ) -> None:
     assert walk(kind, *calls)[-1] == close
+
+
+@pytest.mark.parametrize("kind", ["missed", "dropped", "missing", "undone"])
+def test_what_was_to_be_put_back_and_is_put_to_its_place_is_done_by_the_helper(kind: str) -> None:
+    *_, said, close = walk(kind, "yes", "seen at place")
+    assert said == Remark("Thank you. I see the pink bar at its place now.")
+    assert close == Close(CloseReason.RESOLVED, Resolution.HUMAN_FINISH, True)
+
+
+@pytest.mark.parametrize("kind", ["missed", "dropped", "missing", "undone"])
+def test_what_was_at_its_place_before_is_no_work_of_the_helpers(kind: str) -> None:
+    at_place, anywhere = (
+        walk(kind, "yes", each) for each in ("seen at place, as before", "seen as before")
+    )
+    assert at_place == anywhere
 
 
 @pytest.mark.parametrize(
