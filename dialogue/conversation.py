@@ -109,6 +109,8 @@ class Conversation:
         said_with: Outlook | None = None,
     ) -> None:
         self._script = script.variants.get(issue.sensed, script)
+        if issue.object is None:
+            self._script = self._script.without_object or self._script
         self._issue = issue
         self._outlook = outlook
         self._said_with = said_with or outlook
