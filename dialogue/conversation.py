@@ -109,6 +109,8 @@ class Conversation:
         said_with: Outlook | None = None,
     ) -> None:
         self._script = script.variants.get(issue.sensed, script)
+        if issue.object is None:
+            self._script = self._script.without_object or self._script
         self._issue = issue
         self._outlook = outlook
         self._said_with = said_with or outlook
@@ -162,13 +164,20 @@ class Conversation:
                 return self._enter(following, heard=False)
         raise ValueError(f"an answer is 'yes' or 'no', not {answer!r}")
 
-    def help_seen(self, change: Change) -> list[Turn]:
-        """The camera saw what was promised; `change`: what it saw to change since the question."""
+    def help_seen(self, change: Change, *, at_place: bool = False) -> list[Turn]:
+        """The camera saw what was promised; `change`: what it saw to change since the question.
+
+        `at_place`: whoever was to put the object within reach has put it where it is to go.
+        """
         _CALLS.require(self._phase, DialogueCall.HELP_SEEN)
         if isinstance(self._at, ToldState):
             said = self._word(self._at.thanks)
             return self._settle(CloseReason.RESOLVED, self._at.resolution, said, change)
         state = self._require_help_state(DialogueCall.HELP_SEEN)
+        placed = self._script.put_right.get(Expectation.AT_PLACE) if at_place else None
+        if state.help is Help.PUT_BACK and placed is not None and change.by_a_person:
+            said = f"Thank you. {self._word(_SEEN_NOW[Expectation.AT_PLACE])}"
+            return self._settle(CloseReason.RESOLVED, placed, said, change)
         said = state.thanks if change.by_a_person else state.unchanged
         if change is Change.UNKNOWN:
             said = _SEEN_NOW[EXPECTED[state.help]]

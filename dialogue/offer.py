@@ -33,6 +33,8 @@ class Offer:
     `thanks` (or `unchanged`, where it was so before) and the dialogue closes with `resolution`.
     `put_right`, `denied` and `may_be_mistaken` are a script's. `placeable`: there is an object
     that a helper could place instead; else who refuses is only asked whether it `leaves` it out.
+    Of a leaf that handles nothing the robot says `without_object`, where nothing could help but
+    another object, and asks that at once.
     """
 
     question: str
@@ -51,6 +53,7 @@ class Offer:
     leaves: str = place_branch.LEAVES
     not_felt: Mapping[Felt, str] = field(default_factory=dict)
     given_up: str = "I still do not see that help."
+    without_object: str = ""
 
 
 def offer_script(
@@ -117,4 +120,20 @@ def _script(offer: Offer, patience: Patience, variants: Mapping[Sensed, Script])
         may_be_mistaken=offer.may_be_mistaken,
         reasks=patience.reasks,
         variants=variants,
+        without_object=_without_object(offer, patience),
+    )
+
+
+def _without_object(offer: Offer, patience: Patience) -> Script | None:
+    """The script where there is nothing to place; None if it is the same."""
+    if not offer.placeable or offer.help is Help.PUT_BACK:
+        return None
+    if offer.help is not Help.HAND_OVER:
+        return _script(replace(offer, placeable=False), patience, {})
+    states = place_branch.leaving()
+    leave = states["leave"]
+    assert isinstance(leave, AskState), "the branch ends by asking whether to leave it out"
+    leave = replace(leave, text=f"{offer.without_object} {leave.text}", if_refused=False)
+    return Script(
+        opening="leave", states={**states, "leave": leave}, may_be_mistaken=offer.may_be_mistaken
     )

@@ -263,7 +263,7 @@ class Script:
     help that is not seen is asked about again. `may_be_mistaken`: the robot did not see the issue
     but judged it, so that the same again, where its looks see nothing wrong and nothing changed,
     is a suspected false alarm. `variants` are the scripts that take its place for what was sensed
-    otherwise than by seeing it.
+    otherwise than by seeing it, and `without_object` the one for a leaf that handles nothing.
     """
 
     opening: str
@@ -275,6 +275,7 @@ class Script:
     denied: frozenset[Expectation] = frozenset()
     may_be_mistaken: bool = False
     variants: Mapping[Sensed, "Script"] = field(default_factory=dict)
+    without_object: "Script | None" = None
 
     @property
     def openings(self) -> tuple[str, ...]:

@@ -38,6 +38,8 @@ def _problems(script: Script) -> list[str]:
         problems.append(f"it denies '{each}', for which it does not watch")
     for sensed, variant in script.variants.items():
         problems += [f"if it was {sensed}: {each}" for each in _problems(variant)]
+    if script.without_object is not None:
+        problems += [f"without an object: {each}" for each in _problems(script.without_object)]
     return problems
 
 

@@ -20,5 +20,6 @@ script = offer_script(
             Expectation.IN_REACH: Resolution.ROBOT_FINISH,
         },
         may_be_mistaken=True,
+        without_object="I cannot do the {object}.{why}",
     )
 )

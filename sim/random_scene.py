@@ -87,7 +87,11 @@ def random_scene(
         drawing = _Drawing(rng, sizes or DrawnSizes(), smallness)
         if drawing.fill(count) and _repair(drawing, seed, count, check):
             return RandomTask(drawing.scene(seed), drawing.tree(seed))
-    raise WrongInputError(f"no scene was found with room for {parts} parts: ask for fewer")
+    asked_for = f"1 to {MOST_PARTS}" if parts is None else f"{parts}"
+    raise WrongInputError(
+        f"no scene with {asked_for} parts was found that a robot of this world can do: ask for "
+        "fewer parts or another world"
+    )
 
 
 def _repair(drawing: "_Drawing", seed: int, count: int, check: SceneCheck | None) -> bool:

@@ -1,6 +1,6 @@
 """What cannot work in a task tree whatever the robot: things done twice, or in the wrong order."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -11,6 +11,9 @@ from mend.tasks.leaf_order import LeafOrder
 from mend.tasks.scene import RESTS_M, Pose, Scene, SceneObject
 
 Nodes = Sequence[GoalNode | BehaviorNode]
+
+UNMOVED = -1
+"""Stands for a leaf of what no leaf moves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,12 +122,25 @@ class _Standing:
 
 def _wrongly_stacked(nodes: Nodes, scene: Scene) -> Iterator[TreeProblem]:
     starts, places = _starts(nodes, scene), _places(nodes, scene)
+    unmoved = _unmoved(starts, scene)
     order = LeafOrder(nodes)
     yield from _without_support(starts, places, order)
-    for lower, upper in _stacked(starts):
-        if not order.exclusive(lower.leaf, upper.leaf) and not order.is_before(
-            upper.leaf, lower.leaf
-        ):
+    yield from _on_nothing([*unmoved, *starts], places, order)
+    movers: dict[str, set[int]] = {}
+    for each in starts:
+        movers.setdefault(each.part, set()).add(each.leaf)
+    for lower, upper in _stacked([*starts, *unmoved]):
+        if lower.leaf == UNMOVED:
+            continue
+        if upper.leaf == UNMOVED:
+            yield TreeProblem(
+                lower.leaf,
+                "object",
+                f"'{upper.part}' starts on '{lower.part}', and nothing takes it off: have "
+                f"'{upper.part}' brought elsewhere before '{lower.part}' in a THEN, or let it "
+                "start elsewhere",
+            )
+        elif not _taken_before(movers[upper.part], lower.leaf, order):
             yield TreeProblem(
                 lower.leaf,
                 "object",
@@ -134,7 +150,7 @@ def _wrongly_stacked(nodes: Nodes, scene: Scene) -> Iterator[TreeProblem]:
     for place in places:
         for start in starts:
             if start.part != place.part and start.fills(place):
-                if order.is_before(start.leaf, place.leaf):
+                if _taken_before(movers[start.part], place.leaf, order):
                     continue
                 yield TreeProblem(
                     place.leaf,
@@ -142,6 +158,33 @@ def _wrongly_stacked(nodes: Nodes, scene: Scene) -> Iterator[TreeProblem]:
                     f"'{place.part}' is to go where '{start.part}' starts: put '{start.part}' "
                     f"before it in a THEN, or choose another place",
                 )
+
+
+def _taken_before(movers: Set[int], leaf: int, order: LeafOrder) -> bool:
+    """Whether a part is away before a leaf begins, whichever of the leaves that move it is done."""
+    before = {each for each in movers if order.is_before(each, leaf, surely=False)}
+    return any(order.others_do(each, leaf, before) for each in before)
+
+
+def _on_nothing(
+    standing: Sequence[_Standing], places: Sequence[_Standing], order: LeafOrder
+) -> Iterator[TreeProblem]:
+    """Parts that are to stand on what an OR has placed only instead of them."""
+    carriers: dict[int, list[_Standing]] = {}
+    for lower, upper in _stacked(places):
+        carriers.setdefault(upper.leaf, []).append(lower)
+    for upper in places:
+        below = carriers.get(upper.leaf, [])
+        if not below or not all(order.exclusive(each.leaf, upper.leaf) for each in below):
+            continue
+        if not any(each.part != upper.part and each.carries(upper) for each in standing):
+            yield TreeProblem(
+                upper.leaf,
+                "place",
+                f"'{upper.part}' is to stand on '{below[0].part}', which an OR has placed only "
+                f"instead of '{upper.part}': put both into one alternative, "
+                f"'{below[0].part}' before '{upper.part}' in a THEN, or choose another place",
+            )
 
 
 def _without_support(
@@ -206,6 +249,16 @@ def _starts(nodes: Nodes, scene: Scene) -> list[_Standing]:
         and node.object in scene.objects
         and node.place is not None
         and node.object is not None
+    ]
+
+
+def _unmoved(starts: Sequence[_Standing], scene: Scene) -> list[_Standing]:
+    """Where everything starts that no leaf brings anywhere."""
+    moved = {each.part for each in starts}
+    return [
+        _standing(UNMOVED, name, part, None, scene)
+        for name, part in scene.objects.items()
+        if name not in moved
     ]
 
 

@@ -7,8 +7,9 @@ import numpy as np
 
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location
+from mend.robots.vision.carriers import below, unseen_carriers
 from mend.robots.vision.head import HeadSighting
-from mend.robots.vision.obstruction import Obstruction, obstruction_of
+from mend.robots.vision.obstruction import Obstruction, obstruction_at, obstruction_of
 from mend.robots.vision.projection import Points, pixels_covered
 from mend.robots.vision.seen_box import SeenBox
 from mend.robots.vision.table_view import TableView
@@ -64,6 +65,10 @@ class Fit:
 
 def find_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
     """What is in `room` that is not its part."""
+    return _seen_occupant(view, room, fit) or _hidden_occupant(view, room, fit)
+
+
+def _seen_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
     us, vs, points = view.standing_out(room.bottom_z + fit.tolerance_m)
     volume = _volume(room, fit)
     column = replace(volume, size=(*volume.size[:2], np.inf)).holds(points, margin_m=0.0)
@@ -85,6 +90,24 @@ def find_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
         return None
     what = _most_of(points[inside], view.boxes) or "something unknown"
     return replace(found, what=f"{what} {room.meaning}")
+
+
+def _hidden_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
+    """What the room's own part stands on there, too high, where nothing seen holds it up."""
+    of_part = [each for each in view.boxes if each.name == room.part.name]
+    if room.over_part or not of_part:
+        return None
+    box = min(of_part, key=lambda each: each.bottom_z)
+    carrier = below(box, view.heights.table_z)
+    if box.bottom_z <= room.bottom_z + fit.tolerance_m or carrier not in unseen_carriers(
+        [*view.boxes, *view.recalled], view.heights.table_z
+    ):
+        return None
+    # What carries a part alone is below its middle, wherever else it reaches.
+    if not _volume(room, fit).outline.holds(np.array([[box.x, box.y]]), 0.0).any():
+        return None
+    found = obstruction_at(carrier, view.heights.image)
+    return replace(found, part=None, what=f"{carrier.name} {room.meaning}")
 
 
 def _is_lower(box: SeenBox, room: Room, fit: Fit) -> bool:

@@ -303,11 +303,15 @@ class HelpAwaited(DialogueEvent):
 
 
 class HelpVerified(DialogueEvent):
-    """The robot saw what was promised. `change`: what it saw to change since it asked."""
+    """The robot saw what was promised. `change`: what it saw to change since it asked.
+
+    `at_place`: it saw the object at the very place where that is to go.
+    """
 
     type: Literal["help_verified"] = "help_verified"
     help: Help
     change: Change = Change.UNKNOWN
+    at_place: bool = False
 
 
 class HelpNotSeen(DialogueEvent):

@@ -28,6 +28,7 @@ from mend.server.runtime.dialogue_state import (
     DialogueState,
     call_of,
     rehearse,
+    seen_call,
 )
 from mend.server.runtime.outlooks import is_suspect, outlook_at, outlook_now
 from mend.server.runtime.promises import Promises
@@ -373,8 +374,9 @@ class DialogueDriver:
         make = self._make(dialogue)
         if fulfilled:
             change = self._looks.change_seen(dialogue, proxy, awaiting.help)
-            verified = make.help_verified(awaiting, change)
-            await self._converse(dialogue, f"seen:{change}", [verified], proxy, dialogue.helper)
+            at_place = self._looks.is_at_place(dialogue, proxy)
+            verified = make.help_verified(awaiting, change, at_place=at_place)
+            await self._converse(dialogue, seen_call(verified), [verified], proxy, dialogue.helper)
         elif has_come(self._context.clock, awaiting.until):
             felt = None if proxy.felt is None else Felt(proxy.felt)
             blind = proxy.blind if awaiting.help in _SEEN_BY_HEAD else None

@@ -123,8 +123,12 @@ class DialogueEvents:
             told=told,
         )
 
-    def help_verified(self, awaiting: ev.HelpAwaited, change: Change) -> ev.HelpVerified:
-        return ev.HelpVerified(**self._fields(), help=awaiting.help, change=change)
+    def help_verified(
+        self, awaiting: ev.HelpAwaited, change: Change, *, at_place: bool
+    ) -> ev.HelpVerified:
+        return ev.HelpVerified(
+            **self._fields(), help=awaiting.help, change=change, at_place=at_place
+        )
 
     def help_not_seen(
         self, awaiting: ev.HelpAwaited, felt: Felt | None, blind: str | None

@@ -282,13 +282,14 @@ class DialogueLooks:
         if proxy.led_round and expected is Expectation.WAY_CLEAR:
             expected = Expectation.LED_ROUND
         fulfilled = set() if expected is None else {expected}
-        if self._is_at_place(dialogue, proxy):
+        if self.is_at_place(dialogue, proxy):
             fulfilled.add(Expectation.AT_PLACE)
         if proxy.blind is not None:
             return LookOutcome(frozenset(fulfilled), None, blind=True)
         return LookOutcome(frozenset(fulfilled), seen_at(proxy, dialogue.raised.object))
 
-    def _is_at_place(self, dialogue: DialogueState, proxy: RobotProxy) -> bool:
+    def is_at_place(self, dialogue: DialogueState, proxy: RobotProxy) -> bool:
+        """Whether the last look saw the object at the place where it is to go."""
         return any(each in proxy.there for each in _result_of(dialogue))
 
 

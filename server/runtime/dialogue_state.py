@@ -159,7 +159,7 @@ class DialogueState:
     @_apply.register
     def _(self, event: ev.HelpVerified) -> None:
         self.awaiting = None
-        self.advance(f"seen:{event.change}")
+        self.advance(seen_call(event))
 
     @_apply.register
     def _(self, event: ev.HelpNotSeen) -> None:
@@ -177,6 +177,11 @@ class DialogueState:
         self.claim = None
 
 
+def seen_call(event: ev.HelpVerified) -> str:
+    """The call that tells a conversation of help that was seen."""
+    return f"seen:{event.change}" + (":at_place" if event.at_place else "")
+
+
 def call_of(event: ev.HelpNotSeen) -> str:
     """The call that tells a conversation of help that was not seen."""
     if event.blind is not None:
@@ -187,7 +192,8 @@ def call_of(event: ev.HelpNotSeen) -> str:
 def converse(conversation: Conversation, call: str) -> list[Turn]:
     """Make a call by its name: `open`, `yes`, `no`, `not_seen`, `silence`, `abort`.
 
-    Some have arguments: `seen:moved` (a change), `put_right:at_place:moved` (what is seen, too),
+    Some have arguments: `seen:moved` (a change; `seen:moved:at_place`, where it is at its place),
+    `put_right:at_place:moved` (what is seen, too),
     `not_seen:lighter` (what a basket felt) and `blind:the picture is black` (why nothing was seen).
     """
     if call.startswith(_BLIND):
@@ -198,6 +204,8 @@ def converse(conversation: Conversation, call: str) -> list[Turn]:
             return conversation.answer("yes" if verb == "yes" else "no")
         case "not_seen", [felt]:
             return conversation.help_not_seen(Felt(felt))
+        case "seen", [change, "at_place"]:
+            return conversation.help_seen(Change(change), at_place=True)
         case "seen", [change]:
             return conversation.help_seen(Change(change))
         case "put_right", [seen, change]:

@@ -57,11 +57,14 @@ def is_suspect(state: RunState, raised: ev.IssueRaised) -> bool:
     if raised.outlook is None or raised.outlook.unchanged < 2:
         return False
     leaf = state.tree.index_of(raised.node)
-    before = _dialogue_about(state, state.issues[leaf][-1])
+    previous = _previous(state, leaf, raised)
+    before = None if previous is None else _dialogue_about(state, previous)
     felt = raised.detection is not None and raised.detection.felt
     looked = None if before is None else before.first_look
-    # Who answers before the robot has looked once leaves it with what it saw before it tried again.
-    right = raised.last_seen is not None if looked is None else bool(looked.fulfilled)
+    # Who answers before the robot has looked once leaves it with what it saw before it tried again:
+    # where it has begun, the object was there, and in its reach.
+    begun = bool(raised.step) and raised.last_seen is not None
+    right = begun if looked is None else bool(looked.fulfilled)
     return felt or (state.scripts[raised.issue].may_be_mistaken and right)
 
 
@@ -70,7 +73,7 @@ def is_suspect(state: RunState, raised: ev.IssueRaised) -> bool:
 
 def _unchanged(state: RunState, leaf: int, raised: ev.IssueRaised) -> int:
     """How often on end this issue has come with nothing seen to change in between."""
-    before = next((each for each in reversed(state.issues.get(leaf, [])) if each.interrupts), None)
+    before = _previous(state, leaf, raised)
     if before is None or before.issue != raised.issue or before.outlook is None:
         return 1
     if _barred_between(before) != _barred_between(raised):
@@ -86,6 +89,12 @@ def _unchanged(state: RunState, leaf: int, raised: ev.IssueRaised) -> int:
     if about_the_part and _is_elsewhere(then, raised.last_seen):
         return 1
     return before.outlook.unchanged + 1
+
+
+def _previous(state: RunState, leaf: int, raised: ev.IssueRaised) -> ev.IssueRaised | None:
+    """The last issue of a leaf before one, which may be folded already, that held the robot up."""
+    issues = reversed(state.issues.get(leaf, []))
+    return next((each for each in issues if each.interrupts and each is not raised), None)
 
 
 def _barred_between(raised: ev.IssueRaised) -> list[str]:

@@ -30,6 +30,10 @@ CALLS: dict[str, Call] = {
     "seen": lambda conversation: conversation.help_seen(Change.MOVED),
     "seen as before": lambda conversation: conversation.help_seen(Change.NONE),
     "seen, not before": lambda conversation: conversation.help_seen(Change.UNKNOWN),
+    "seen at place": lambda conversation: conversation.help_seen(Change.MOVED, at_place=True),
+    "seen at place, as before": lambda conversation: conversation.help_seen(
+        Change.NONE, at_place=True
+    ),
     "not seen": Conversation.help_not_seen,
     "at place": lambda conversation: conversation.put_right(
         PutRight(Expectation.AT_PLACE, Change.MOVED)
@@ -114,6 +118,70 @@ def test_a_lost_part_is_put_back_or_placed_by_the_helper_or_tried_again_later(
     kind: str, calls: list[str], close: Close
 ) -> None:
     assert walk(kind, *calls)[-1] == close
+
+
+@pytest.mark.parametrize(
+    ("kind", "felt", "asked"),
+    [
+        ("unreachable", False, ["I cannot do the tap. It is far. Shall I leave the tap out?"]),
+        (
+            "blocked",
+            False,
+            [
+                "I cannot go on. It is far. Can you clear the way?",
+                "Shall I leave the tap out?",
+            ],
+        ),
+        (
+            "blocked",
+            True,
+            [
+                "I felt something hold up my arm and stopped. Can you clear its way?",
+                "Shall I leave the tap out?",
+            ],
+        ),
+    ],
+)
+def test_nobody_is_asked_to_hand_over_or_place_where_a_leaf_handles_nothing(
+    kind: str, felt: bool, asked: list[str]
+) -> None:
+    sensed = Sensed.FELT if felt else Sensed.SEEN
+    issue = Issue(
+        kind=kind,
+        robot="pr2",
+        node="/0",
+        name="tap",
+        object=None,
+        place=None,
+        step=0,
+        reason="it is far",
+        sensed=sensed,
+    )
+    for outlook in (AGAIN, THIRD):
+        conversation = Conversation(SCRIPTS[kind], issue, outlook)
+        turns = conversation.open()
+        while conversation.phase is ConversationPhase.ASKING:
+            turns += conversation.answer("no")
+        asks = [turn for turn in turns if isinstance(turn, Ask)]
+        told = [text for ask in asks for text in (ask.text, ask.yes_effect, ask.no_effect)]
+        assert not any("place the" in text or "hand" in text for text in told), told
+        if outlook is AGAIN:
+            assert [ask.text for ask in asks] == asked
+
+
+@pytest.mark.parametrize("kind", ["missed", "dropped", "missing", "undone"])
+def test_what_was_to_be_put_back_and_is_put_to_its_place_is_done_by_the_helper(kind: str) -> None:
+    *_, said, close = walk(kind, "yes", "seen at place")
+    assert said == Remark("Thank you. I see the pink bar at its place now.")
+    assert close == Close(CloseReason.RESOLVED, Resolution.HUMAN_FINISH, True)
+
+
+@pytest.mark.parametrize("kind", ["missed", "dropped", "missing", "undone"])
+def test_what_was_at_its_place_before_is_no_work_of_the_helpers(kind: str) -> None:
+    at_place, anywhere = (
+        walk(kind, "yes", each) for each in ("seen at place, as before", "seen as before")
+    )
+    assert at_place == anywhere
 
 
 @pytest.mark.parametrize(

@@ -237,7 +237,7 @@ class PretendRobots:
             holding = {"execution": start.execution, "at": "neutral"}
             await self.report(robot, Holding.model_validate(holding))
             return
-        for step in range(5 if resumed else 1, 9):
+        for step in range(5 if resumed else 0, 9):
             due = [each for each in faults if each[1] == step and (robot.stubborn or not resumed)]
             if due and due[0][0] in robot.interrupting:
                 faults.remove(due[0])
@@ -251,6 +251,8 @@ class PretendRobots:
                 holding = {"execution": start.execution, "at": at}
                 await self.report(robot, Holding.model_validate(holding))
                 return
+            if step == 0:
+                continue
             robot.time += 1.0
             await self.report(
                 robot, StepStarted(execution=start.execution, step=step, name=f"step {step}")

@@ -68,6 +68,22 @@ async def test_a_leg_stolen_after_it_was_placed_is_placed_again_and_what_follows
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("step", "issue"), [(4, "dropped"), (6, "undone")])
+async def test_who_places_what_was_to_be_put_back_has_done_it(
+    step: int, issue: str, tmp_path: Path
+) -> None:
+    deeds = [
+        steal("green_leg", during="green_leg", step=step, fraction=0.5),
+        {"at_s": 26.0, "do": {"act": "place", "object": "green_leg", "place": "green_leg"}},
+    ]
+    view, events = await build(tmp_path, deeds, answers=["yes"] * 20, person={"never": 1.0})
+    assert view.status is RunStatus.FINISHED
+    assert raised(events) == [(issue, "green_leg")]
+    done = [each for each in events if isinstance(each, ev.NodeDone) and each.name == "green_leg"]
+    assert [each.by for each in done] == ["human"]
+
+
+@pytest.mark.slow
 async def test_all_parts_stolen_after_they_were_placed_are_placed_again(tmp_path: Path) -> None:
     thefts = [steal(part, during="purple_top", step=8, fraction=0.9) for part in ALL]
     view, events = await build(tmp_path, thefts, answers=["yes"] * 40)

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sampled import sample
 
+from mend.errors import WrongInputError
 from mend.robots.catalogue import Part
 from mend.server.behaviors import behavior_parameters
 from mend.sim.random_parts import DrawnSizes
@@ -237,3 +238,14 @@ def test_a_low_part_is_not_reached_beside_a_tower():
     tower = Part("tower", (0.03, 0.03, 0.12))
     assert low.hinders(standing(tower, 0.57, 0.0, 0.7, 0.0))
     assert not low.hinders(standing(tower, 0.63, 0.0, 0.7, 0.0))
+
+
+@pytest.mark.parametrize(("parts", "told"), [(None, "with 1 to 30 parts"), (2, "with 2 parts")])
+def test_where_nothing_is_possible_that_is_said(parts, told, monkeypatch):
+    monkeypatch.setattr("mend.sim.random_scene._SCENES_TRIED", 1)
+
+    def refuse_all(scene, _):
+        return [SceneProblem(("objects", name), "no arm") for name in scene.objects]
+
+    with pytest.raises(WrongInputError, match=f"{told} was found that a robot of this world"):
+        random_scene(1, parts, refuse_all)

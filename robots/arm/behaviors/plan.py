@@ -11,7 +11,6 @@ from mend.robots.arm.behaviors.planning import Barred, Plan, bar_of, plan_amid
 from mend.robots.arm.behaviors.work import Work
 from mend.robots.arm.body import ToolPose
 from mend.robots.arm.grasp import UngraspableError
-from mend.robots.catalogue import Part
 from mend.robots.execution.routine import Routine
 from mend.robots.vision.carriers import bears
 from mend.robots.vision.obstruction import Obstruction, obstruction_at
@@ -49,7 +48,8 @@ def make_plan(work: Work) -> Routine[Plan | None]:
     if isinstance(reason, Crowding):
         findings.refusal = str(reason)
     else:
-        findings.refusal = f"with {_name(part)} the arm {reason.reason}"
+        carrying = "" if part is None else f"with {part.name} "
+        findings.refusal = f"{carrying}the arm {reason.reason}"
     findings.obstruction = findings.obstruction or bar
     return None
 
@@ -84,10 +84,6 @@ def carries(box: SeenBox, errand: Errand, table_z: float) -> bool:
     ends = [each for each in (errand.found, errand.target) if each is not None]
     spots = [(each.x, each.y, table_z if each.z is None else each.z) for each in ends]
     return any(bears(box, spot, radius_m) for spot in spots)
-
-
-def _name(part: Part | None) -> str:
-    return "the place" if part is None else part.name
 
 
 def _judge_way(way: Sequence[ToolPose], work: Work) -> None:

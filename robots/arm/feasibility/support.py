@@ -106,7 +106,8 @@ def _tips_over(
     below = " and ".join(each.name for each in carriers)
     where = f"would tip off {below}" if carriers else "would tip over"
     if lean_rad > 0.0:
-        where += f" as soon as it leans by {math.degrees(lean_rad):.0f} degrees"
+        # Rounded down: what is told has to be less than what is asked for.
+        where += f" as soon as it leans by {math.floor(math.degrees(lean_rad))} degrees"
     mend = "put its middle further over what carries it" if carriers else "lay it on its side"
     yield SceneProblem(
         standing.where,

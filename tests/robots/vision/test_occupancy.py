@@ -67,6 +67,31 @@ def test_a_free_place_is_free(parts: dict[str, Resting], room: Room, noise: floa
     assert check(DrawnScene(parts, noise=noise), room) is None
 
 
+@pytest.mark.parametrize("at", [(0.535, -0.12), (0.56, -0.118)])
+def test_what_a_part_stands_on_at_its_place_is_where_it_belongs(at: tuple[float, float]) -> None:
+    found = check(DrawnScene({"pink_bar": Resting(*at, TABLE_Z + 0.03)}))
+    assert found is not None
+    assert found.what == "what pink_bar stands on is where pink_bar belongs"
+    assert np.allclose(found.position[:2], at, atol=0.005)
+
+
+@pytest.mark.parametrize(
+    ("parts", "room"),
+    [
+        ({"pink_bar": Resting(0.535, -0.20, TABLE_Z + 0.03)}, BAR_ROOM),
+        (
+            {"purple_top": Resting(0.535, -0.05, TABLE_Z + 0.08)},
+            room_at_place(PARTS["purple_top"], Location(x=0.535, y=-0.05), TABLE_Z + 0.08),
+        ),
+    ],
+    ids=["beside its place", "as high as it is to stand"],
+)
+def test_what_a_part_stands_on_elsewhere_is_in_nobodys_way(
+    parts: dict[str, Resting], room: Room
+) -> None:
+    assert check(DrawnScene(parts), room) is None
+
+
 def test_what_stands_beside_a_half_hidden_part_does_not_lie_on_it() -> None:
     bar = Resting(0.52, -0.30, TABLE_Z, np.pi / 2)
     sighting = view_of(DrawnScene({"pink_bar": bar}).picture()).sightings["pink_bar"]

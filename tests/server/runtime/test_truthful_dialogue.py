@@ -142,6 +142,19 @@ async def test_operators_hear_of_a_robot_that_is_wrong_also_where_no_is_said_at_
     assert (alarm.object, alarm.issue, alarm.times) == ("part_1", "missed", 2)
 
 
+@pytest.mark.parametrize("delay_s", [0.0, 5.0])
+async def test_what_is_seen_out_of_reach_is_no_false_alarm(
+    delay_s: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", delay_s)
+    _, events = await run_with("unreachable", 0, ["no"] * 50)
+    raised = of_type(events, ev.IssueRaised)
+    assert [each.outlook.unchanged for each in raised] == [1, 2, 3]
+    assert all(each.last_seen is not None for each in raised)
+    assert [bool(each.fulfilled) for each in of_type(events, ev.FirstLook)] in ([], [False] * 3)
+    assert of_type(events, ev.SuspectedFalseAlarm) == []
+
+
 async def test_other_leaves_go_first_after_a_failure_of_the_robots_own() -> None:
     _, events = await run_with("missed", 4, "none", times=1, goal="and", wrong=True)
     started = [each.name for each in of_type(events, ev.NodeStarted)]

@@ -12,7 +12,7 @@ from mend.sim.tabletop.layout import lay_out
 from mend.sim.world import WorldSetup
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.scenario import ScriptedIntervention, Trigger
-from mend.tasks.scene import Pose, Scene
+from mend.tasks.scene import Place, Pose, Scene, SceneObject
 
 LAID_OUT = lay_out([(f"o{i}", f"p{i}") for i in range(6)], seed=2)
 
@@ -155,6 +155,34 @@ def test_a_place_that_is_taken_is_seen_cleared_and_then_filled() -> None:
     assert len(driver.of(Finished)) == 1
     assert expect(driver, Look(object="o1", place="p1", expect="at_place")) is True
     assert expect(driver, Look(object="o2", expect="in_reach", within_s=1.0)) is True
+
+
+def test_what_a_part_was_put_onto_unseen_is_asked_for_and_not_put_onto_again() -> None:
+    small = SceneObject(color=(0.9, 0.1, 0.1), size=(0.03, 0.03, 0.03), pose=Pose(x=0.5, y=-0.3))
+    cup = SceneObject(color=(0.1, 0.6, 0.3), size=(0.045, 0.055, 0.05), pose=Pose(x=0.58, y=-0.48))
+    place = Pose(x=0.45, y=-0.05)
+    scene = Scene(name="s", objects={"o1": cup, "o2": small}, places={"p1": Place(pose=place)})
+    under = Intervention(act=Act.MOVE, object="o2", to=place)
+    driver = make_driver(scene, during(2, 0.2, under))
+    driver.start("o1", "p1")
+    assert driver.run_until_issue().issue == "undone"
+    driver.run()
+    driver.send(Interrupt(retreat=True))
+    driver.run()
+    driver.start("o1", "p1", execution="e2")
+    driver.run()
+    assert [each.issue for each in driver.issues] == ["undone", "blocked"]
+    detection = driver.issues[-1].detection
+    assert detection is not None
+    assert detection.explanation == "what o1 stands on is where o1 belongs"
+    clear = Look(object="o1", place="p1", expect="way_clear", within_s=2.0)
+    assert expect(driver, clear) is False
+    driver.send(by_ann(Act.RELEASE, object="o1", place="p1"))
+    assert expect(driver, clear) is True
+    driver.send(Resume(execution="e2"))
+    driver.run()
+    assert len(driver.of(Finished)) == 1
+    assert expect(driver, Look(object="o1", place="p1", expect="at_place")) is True
 
 
 def test_a_part_under_another_is_freed_and_then_picked() -> None:

@@ -139,6 +139,13 @@ def test_a_place_that_cannot_be_filled_is_told_of(at: Pose, says: str) -> None:
     assert says in found.message
 
 
+def test_what_hardly_tips_over_is_not_said_to_stand_as_firmly_as_it_has_to() -> None:
+    made = scene({"part": box(0.5, -0.4, (0.021, 0.05, 0.157))}, target=FREE)
+    found = problems_of(made, leaf("part", "target", None))
+    says = "as soon as it leans by 7 degrees, and has to stand leaning by 8 degrees"
+    assert [says in each.message for each in found] == [True, True]
+
+
 def wall(x: float, y: float) -> SceneObject:
     """So tall and long that nothing can be grasped right beside it."""
     return box(x, y, (0.2, 0.05, 0.12))
