@@ -47,14 +47,18 @@ def make(state: FleetState, number: int, closes: bool) -> list[int]:
     item, kept = state.items[task.item], _is_kept(state, number)
     if not task.action.loads and item.robot != number:
         raise EventError(f"robot '{robot.robot.name}' does not have '{item.item.name}' on board")
-    if task.action.loads and not is_there(state, number):
+    if task.action.loads and not may_have_loaded(state, number):
         place = state.building.places[task.place]
         raise EventError(
             f"item '{item.item.name}' was not left at {place}: nobody can take it there"
         )
     begin_s = state.now_s if robot.begun_s is None else robot.begun_s
     try:
-        state.record(number, task, begin_s, state.now_s)
+        if _is_in_another_basket(state, number):
+            item.change_baskets(number)
+            state.note_made(number, task, begin_s, state.now_s)
+        else:
+            state.record(number, task, begin_s, state.now_s)
     except ItemStateError as error:
         raise EventError(str(error)) from error
     if kept and not closes:
@@ -87,6 +91,19 @@ def is_there(state: FleetState, number: int) -> bool:
             now = state.routes[number][0]
             return now.action is not Action.TAKE or is_given(state.routes, number, now)
     return True
+
+
+def may_have_loaded(state: FleetState, number: int) -> bool:
+    """Whether a robot may have got what it has set out to load: `is_there`, or people took it out
+    of the basket of a robot that has worked again since."""
+    return is_there(state, number) or _is_in_another_basket(state, number)
+
+
+def _is_in_another_basket(state: FleetState, number: int) -> bool:
+    """What is taken at a place to change robots is not there before it was given."""
+    task = _doing(state.robots[number])
+    item = state.items[task.item]
+    return task.action is Action.PICK and item.state is ItemState.ABOARD and item.robot != number
 
 
 def fail(state: FleetState, number: int, at: int, again_s: float | None) -> list[int]:
