@@ -253,6 +253,11 @@ class Dispatcher:
         """The ways that were found blocked or closed, and until when that counts."""
         return self._state.fleet.closed_until_s()
 
+    def taken_out(self) -> Mapping[str, frozenset[str]]:
+        """By robot, the requests whose things were taken out of its basket for others, of which it
+        has to be told before it sets out."""
+        return self._state.fleet.taken_out()
+
     def views(self) -> list[RequestView]:
         """All requests that are known, in the order in which they came."""
         stops = stops_by_booking(self._state.fleet)

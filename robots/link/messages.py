@@ -513,6 +513,16 @@ class Avoid(Message):
     ways: Annotated[list[ClosedWay], Field(max_length=MOST)] = []
 
 
+class NoteTaken(Message):
+    """People have taken these `items` out of the robot's basket, for other robots.
+
+    It has them no more and misses them in no basket. What it does not have changes nothing.
+    """
+
+    type: Literal["note_taken"] = "note_taken"
+    items: Annotated[list[Word], Field(max_length=MOST)]
+
+
 class Hold(Message):
     """Simulated worlds: let the clock run, the arm holding still, until `until` or a command.
 
@@ -556,6 +566,7 @@ CommandBody = Annotated[
     | Look
     | SlowDown
     | Avoid
+    | NoteTaken
     | Hold
     | Intervene
     | TakePicture
@@ -575,7 +586,7 @@ class Hello(Message):
     `shows`: what its `poses` hold; None if it sends none. `room`: without it no other robot of its
     run works while its arm does not rest. `keeps_clear`: it moves about and keeps clear of others
     by what it senses itself, so that no space is kept for it. `driven`: None without a base.
-    `avoids_ways`: it takes `avoid`.
+    `avoids_ways`: it takes `avoid`. `notes_taken`: it takes `note_taken`.
     """
 
     type: Literal["hello"] = "hello"
@@ -594,6 +605,7 @@ class Hello(Message):
     keeps_clear: bool = False
     driven: Driven | None = None
     avoids_ways: bool = False
+    notes_taken: bool = False
 
 
 class Report(Message):

@@ -25,7 +25,7 @@ from mend.server.fleets.fleet_news import FleetNews
 from mend.server.fleets.fleet_record import Errand, FleetRecord
 from mend.server.fleets.fleets import KIND
 from mend.server.fleets.leg_execution import LegExecution, LegTurn
-from mend.server.fleets.leg_task import doable_kinds, require_doable
+from mend.server.fleets.leg_task import doable_kinds, require_doable, taken_out
 from mend.server.fleets.making_way import who_makes_way
 from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.place_names import PlaceNames
@@ -136,6 +136,7 @@ class FleetAtWork:
             await self._keep()
             under_way = self.dispatcher.legs_under_way()
             self._site.keep_off(self.dispatcher.closed_until_s())
+            self._site.note_taken(taken_out(self.dispatcher))
             for execution, _ in self._legs.values():
                 execution.look_again()
             self._alarms.ring()

@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING
 from uuid import UUID, uuid4
 
 from mend.errors import ConflictError
-from mend.robots.link.messages import Avoid, ClosedWay, Held, Hello, Holding, Poses, Report
+from mend.robots.link.messages import (
+    Avoid,
+    ClosedWay,
+    Held,
+    Hello,
+    Holding,
+    NoteTaken,
+    Poses,
+    Report,
+)
 from mend.server.journal.journal import Entry, Journal, Receipt
 from mend.server.poses.bases import SeenBase, in_scene
 from mend.server.robots.registry import RobotRegistry
@@ -64,6 +73,7 @@ class Site:
         """Told when a robot has come, when a run has given robots back, and when time has passed
         for which somebody had waited."""
         self._closed: Mapping[frozenset[str], float] = {}
+        self._taken: Mapping[str, Sequence[str]] = {}
         self._restarts = 0
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -145,9 +155,24 @@ class Site:
             if self.is_connected(robot):
                 self._tell_ways(robot)
 
+    def note_taken(self, taken: Mapping[str, Sequence[str]]) -> None:
+        """Have robots know what people have taken out of their baskets for others, by robot."""
+        before, self._taken = self._taken, {each: [*items] for each, items in taken.items()}
+        for robot, items in self._taken.items():
+            if set(items) - set(before.get(robot, ())) and self.is_connected(robot):
+                self._tell_taken(robot)
+
     def _told_on_coming(self, robot: str) -> None:
         if self._closed:
             self._tell_ways(robot)
+        if self._taken.get(robot):
+            self._tell_taken(robot)
+
+    def _tell_taken(self, robot: str) -> None:
+        hello = self._registry.hello(robot)
+        if hello is not None and hello.notes_taken:
+            body = NoteTaken(items=[*self._taken[robot]])
+            self._registry.send(robot, str(uuid4()), body, renews=False)
 
     def _tell_ways(self, robot: str) -> None:
         hello = self._registry.hello(robot)
