@@ -68,6 +68,8 @@ class Base(Effector[BaseBody]):
         self.company = Company(self.companion, body.time_s)
         self.whereabouts: Whereabouts = whereabouts or AlwaysKnown()
         self.closed = ClosedWays()
+        self.asks_after_s = 0.0
+        """So long others have, once they know, to do what it is about before it asks people."""
         self.at_rest = True
         self._speed = 1.0
         self._surroundings = Surroundings()

@@ -90,6 +90,7 @@ class BaseSubsystem:
         """Keep off ways where others lead."""
         ways = {frozenset(each.between): each.until for each in told.ways}
         self.effector.closed.tell(ways)
+        self.effector.asks_after_s = told.asks_after_s
 
     @property
     def notes_taken(self) -> bool:

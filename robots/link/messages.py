@@ -338,7 +338,8 @@ class WayFound(Message):
     """What a robot has found of a way that it drives, without asking anybody.
 
     `between`: neighbouring places of its map, the one it came from first. It goes round where that
-    is `blocked`, a `door_closed` or an `elevator_dead`; it is `open` once the robot has passed it.
+    is `blocked`, a `door_closed` or an `elevator_dead`, or waits before it asks, as `avoid` says;
+    it is `open` once the robot has passed it.
     """
 
     type: Literal["way_found"] = "way_found"
@@ -506,11 +507,14 @@ class ClosedWay(Message):
 class Avoid(Message):
     """Keep off these ways where others lead; all that were told before are open again.
 
-    It changes nothing else that the robot does, at whatever time it comes.
+    It changes nothing else that the robot does, at whatever time it comes. `asks_after_s`: before
+    it asks people to free a way, it reports `way_found`, once in each execution, and waits so long,
+    as another robot may do instead what it is about.
     """
 
     type: Literal["avoid"] = "avoid"
     ways: Annotated[list[ClosedWay], Field(max_length=MOST)] = []
+    asks_after_s: Span = 0.0
 
 
 class NoteTaken(Message):

@@ -74,6 +74,7 @@ class Site:
         for which somebody had waited."""
         self._closed: Mapping[frozenset[str], float] = {}
         self._taken: Mapping[str, Sequence[str]] = {}
+        self._asks_after_s = 0.0
         self._restarts = 0
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -143,6 +144,13 @@ class Site:
                 return True
         return False
 
+    def hear_of_ways(self, asks_after_s: float) -> None:
+        """Somebody hears what its robots find of ways: each waits so long before it asks people."""
+        self._asks_after_s = asks_after_s
+        for robot in self._frames:
+            if self.is_connected(robot):
+                self._tell_ways(robot)
+
     def keep_off(self, closed: Mapping[frozenset[str], float]) -> None:
         """Have its robots keep off ways between neighbouring places, each until a time (s).
 
@@ -163,7 +171,7 @@ class Site:
                 self._tell_taken(robot)
 
     def _told_on_coming(self, robot: str) -> None:
-        if self._closed:
+        if self._closed or self._asks_after_s:
             self._tell_ways(robot)
         if self._taken.get(robot):
             self._tell_taken(robot)
@@ -181,7 +189,8 @@ class Site:
                 ClosedWay(between=sorted(way), until=until_s)
                 for way, until_s in self._closed.items()
             ]
-            self._registry.send(robot, str(uuid4()), Avoid(ways=ways), renews=False)
+            body = Avoid(ways=ways, asks_after_s=self._asks_after_s)
+            self._registry.send(robot, str(uuid4()), body, renews=False)
 
     # --- Its world ----------------------------------------------------------------------------
 

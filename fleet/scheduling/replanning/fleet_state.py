@@ -70,6 +70,7 @@ class FleetState:
         """The same by itself, without what was done: what happens to one leaves the other."""
         return replace(
             self,
+            ways=None if self.ways is None else self.ways.copy(),
             robots=[replace(robot) for robot in self.robots],
             items=[item.copy() for item in self.items],
             routes=list(self.routes),

@@ -135,6 +135,17 @@ def fail(state: FleetState, number: int, at: int, again_s: float | None) -> list
     return [task.item]
 
 
+def let_go(state: FleetState, number: int) -> list[int]:
+    """Others may do what it has set out for. Raises `EventError` where they cannot."""
+    robot = state.robots[number]
+    task = _doing(robot)
+    if not _is_kept(state, number) or state.items[task.item].robot is not None:
+        name, item = robot.robot.name, state.items[task.item].item.name
+        raise EventError(f"nobody else can do what robot '{name}' is about with '{item}'")
+    state.take_out(task.item)
+    return [task.item]
+
+
 def _doing(robot: TrackedRobot) -> Task:
     if robot.doing is None:
         raise EventError(f"robot '{robot.robot.name}' has not set out for anything")

@@ -22,6 +22,7 @@ from mend.fleet.scheduling.replanning.events import (
     EventError,
     Fetched,
     ItemLost,
+    LetGo,
     NewItem,
     RobotBack,
     RobotDelayed,
@@ -171,6 +172,23 @@ class RunningFleet:
         arrival_s = state.travel.trip(robot.place, place, later_s, speed).arrival_s
         return max(from_s, later_s) if arrival_s <= stop.begin_s + CHECK_S else from_s
 
+    def passes(self, name: str) -> list[str]:
+        """The places that a robot passes from stop to stop, once it is where it is on its way to.
+
+        Only its stops where the ways between them are not known.
+        """
+        state, robot = self._state, self.robots[name]
+        at, leaves_s, speed = robot.place, robot.available_s(state.now_s), robot.robot.speed
+        passed = [at]
+        for stop in self.stops()[name]:
+            trip = (at, state.place_number(stop.place))
+            arrival_s = state.travel.trip(*trip, leaves_s, speed).arrival_s
+            ways = state.ways
+            path = () if ways is None else ways.path(trip, arrival_s, leaves_s, speed)
+            passed += [place for place, _ in path] or [trip[1]]
+            at, leaves_s = trip[1], stop.done_s
+        return [state.building.places[place] for place in passed]
+
     def is_there(self, name: str) -> bool:
         """Whether what a robot has set out to load is there for it, as far as is known.
 
@@ -263,7 +281,7 @@ class RunningFleet:
                 return self._open(event.between)
             case TimePassed():
                 return self._replan(self._state.retry())
-            case SetOut() | StopBegun() | StopMade() | StopFailed():
+            case SetOut() | StopBegun() | StopMade() | StopFailed() | LetGo():
                 return self._observe(event)
             case ItemLost():
                 return self._end(event.item, ItemState.LOST)
@@ -272,7 +290,7 @@ class RunningFleet:
             case Fetched():
                 return self._end(event.item, ItemState.CANCELLED)
 
-    def _observe(self, event: SetOut | StopBegun | StopMade | StopFailed) -> Outcome:
+    def _observe(self, event: SetOut | StopBegun | StopMade | StopFailed | LetGo) -> Outcome:
         if not self._observed:
             raise EventError("these robots are not observed: they do what is planned")
         state, number = self._state, self._state.robot_number(event.robot)
@@ -287,6 +305,8 @@ class RunningFleet:
             case StopFailed():
                 place = state.place_number(event.at)
                 selling = observed_stops.fail(state, number, place, event.again_s)
+            case LetGo():
+                selling = observed_stops.let_go(state, number)
         return self._replan(selling)
 
     def _set_out(self, number: int) -> Outcome:

@@ -59,6 +59,7 @@ class FakeSite:
         self.odometers: dict[str, Odometer] = {}
         self.kept_off: set[frozenset[str]] = set()
         self.stands_still = False
+        self.asks_after_s = 0.0
         self.taken: Mapping[str, list[str]] = {}
 
     def odometer(self, robot: str) -> Odometer | None:
@@ -66,6 +67,9 @@ class FakeSite:
 
     def keep_off(self, closed: Mapping[frozenset[str], float]) -> None:
         self.kept_off = set(closed)
+
+    def hear_of_ways(self, asks_after_s: float) -> None:
+        self.asks_after_s = asks_after_s
 
     def note_taken(self, taken: Mapping[str, list[str]]) -> None:
         self.taken = taken

@@ -99,3 +99,14 @@ async def test_who_has_a_basket_is_told_once_what_was_taken_out_and_anew_when_it
     site.note_taken({})
     await come(site, registry, hello("ada", boot="3"))
     assert len(registry.told) == 3
+
+
+async def test_who_is_heard_of_ways_is_told_to_wait_before_it_asks() -> None:
+    site, registry = await site_of(hello("ada"))
+    site.hear_of_ways(3.0)
+    await come(site, registry, hello("bob"))
+    assert registry.told == [(name, Avoid(asks_after_s=3.0)) for name in ("ada", "bob")]
+    site.keep_off({LANE: 90.0})
+    assert registry.told[2:] == [
+        (name, TOLD.model_copy(update={"asks_after_s": 3.0})) for name in ("ada", "bob")
+    ]
