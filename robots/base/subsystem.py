@@ -91,6 +91,7 @@ class BaseSubsystem:
         ways = {frozenset(each.between): each.until for each in told.ways}
         self.effector.closed.tell(ways)
         self.effector.asks_after_s = told.asks_after_s
+        self.effector.failed = {each.robot: (each.x, each.y, each.z) for each in told.failed}
 
     @property
     def notes_taken(self) -> bool:

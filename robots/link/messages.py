@@ -131,6 +131,7 @@ class Detection(Message):
     seen, or not seen, gives none. `explanation` is a clause that people are told: what the robot
     sensed. `guesses`: where a robot may be that is lost, likeliest first (`at F1-101`).
     `between`: the neighbouring places between which a way is barred, the one it came from first.
+    `robot`: that which is in the way, if it is a robot that has failed.
     """
 
     camera: Word
@@ -145,6 +146,7 @@ class Detection(Message):
     explanation: Sentence = ""
     guesses: Annotated[list[Word], Field(max_length=MOST_GUESSES)] = []
     between: Annotated[list[Word], Field(max_length=2)] = []
+    robot: Word | None = None
 
 
 LASER = "laser"
@@ -504,17 +506,28 @@ class ClosedWay(Message):
     until: Time
 
 
+class FailedRobot(Message):
+    """A robot that works no more stands there, and may be pushed aside (base frame, metres)."""
+
+    robot: Word
+    x: Coordinate
+    y: Coordinate
+    z: Coordinate
+
+
 class Avoid(Message):
     """Keep off these ways where others lead; all that were told before are open again.
 
     It changes nothing else that the robot does, at whatever time it comes. `asks_after_s`: before
     it asks people to free a way, it reports `way_found`, once in each execution, and waits so long,
-    as another robot may do instead what it is about.
+    as another robot may do instead what it is about. `failed`: what it sees where one of these
+    stands is that robot.
     """
 
     type: Literal["avoid"] = "avoid"
     ways: Annotated[list[ClosedWay], Field(max_length=MOST)] = []
     asks_after_s: Span = 0.0
+    failed: Annotated[list[FailedRobot], Field(max_length=MOST)] = []
 
 
 class NoteTaken(Message):

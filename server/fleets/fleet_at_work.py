@@ -142,7 +142,9 @@ class FleetAtWork:
                     self._send(robot, to, None)
             await self._keep()
             under_way = self.dispatcher.legs_under_way()
-            self._site.keep_off(self.dispatcher.closed_until_s())
+            robots = self.dispatcher.fleet.robots.items()
+            failed = [name for name, each in robots if not each.works]
+            self._site.keep_off(self.dispatcher.closed_until_s(), failed)
             self._site.note_taken(taken_out(self.dispatcher))
             for execution, _ in self._legs.values():
                 execution.look_again()

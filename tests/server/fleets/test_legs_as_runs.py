@@ -1,7 +1,7 @@
 """A fleet hands its legs out as runs, once each, and follows what becomes of them."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Collection, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -60,13 +60,16 @@ class FakeSite:
         self.kept_off: set[frozenset[str]] = set()
         self.stands_still = False
         self.asks_after_s = 0.0
+        self.failed: list[str] = []
         self.taken: Mapping[str, list[str]] = {}
 
     def odometer(self, robot: str) -> Odometer | None:
         return self.odometers.get(robot)
 
-    def keep_off(self, closed: Mapping[frozenset[str], float]) -> None:
-        self.kept_off = set(closed)
+    def keep_off(
+        self, closed: Mapping[frozenset[str], float], failed: Collection[str] = ()
+    ) -> None:
+        self.kept_off, self.failed = set(closed), [*failed]
 
     def hear_of_ways(self, asks_after_s: float) -> None:
         self.asks_after_s = asks_after_s
@@ -425,6 +428,7 @@ async def test_who_fetches_something_says_in_whose_basket_it_is_and_its_robot_is
     async with working("a", "e") as work:
         fetching = await _with_tea_aboard_r0_fails(work)
         assert fetching.parameters["held_by"] == "r0"
+        assert work.site.failed == ["r0"], "the others know what they meet there"
         assert work.site.taken == {}
         fetching.ended.set_result(("finished", True))
         bringing = await work.runs.nth(4)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 from uuid import UUID
 
-from mend.robots.link.messages import Avoid, ClosedWay, Hello, NoteTaken
+from mend.robots.link.messages import Avoid, ClosedWay, FailedRobot, Hello, NoteTaken
 from mend.server.runtime.clock import WorldTime
 from mend.server.sites.site import Site
 from mend.tasks.frames import Frame
@@ -26,6 +26,9 @@ class FakeRegistry:
 
     def hello(self, robot: str) -> Hello | None:
         return self.hellos.get(robot)
+
+    def poses(self, _: str) -> None:
+        """Nobody says where it is."""
 
     def send(self, robot: str, _: str, body: Any, **__: object) -> None:
         if isinstance(body, Avoid | NoteTaken):
@@ -110,3 +113,18 @@ async def test_who_is_heard_of_ways_is_told_to_wait_before_it_asks() -> None:
     assert registry.told[2:] == [
         (name, TOLD.model_copy(update={"asks_after_s": 3.0})) for name in ("ada", "bob")
     ]
+
+
+async def test_where_robots_stand_that_have_failed_the_others_are_told_in_their_own_frames() -> (
+    None
+):
+    site, registry = await site_of(hello("ada"), hello("bob"))
+    site._seen_at["bob"] = (4.04, 2.0, 3.5)
+    site.keep_off({}, ["bob"])
+    stands = FailedRobot(robot="bob", x=4.0, y=2.0, z=3.5)
+    assert registry.told == [("ada", Avoid(failed=[stands])), ("bob", Avoid())]
+    site.keep_off({}, ["bob"])
+    await come(site, registry, hello("ada", boot="2"))
+    assert registry.told[2:] == [("ada", Avoid(failed=[stands]))]
+    site.keep_off({})
+    assert registry.told[3:] == [("ada", Avoid()), ("bob", Avoid())]
