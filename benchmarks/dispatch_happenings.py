@@ -142,7 +142,13 @@ class DispatchHappenings:
         finding = chance.choice(list(Finding))
         way = chance.choice(closed if finding is Finding.OPEN and closed else self._ways)
         until_s = now_s + chance.choice((100.0, 2000.0)) if chance.random() < 0.5 else None
-        dispatcher.found(Found(finding=finding, between=(way[0], way[1]), until_s=until_s), now_s)
+        found = Found(finding=finding, between=(way[0], way[1]), until_s=until_s)
+        if finding is not Finding.OPEN and (legs := dispatcher.legs_under_way()):
+            by = chance.choice(legs).robot
+            instead = dispatcher.take_over(found.model_copy(update={"by": by}), now_s)
+            if instead is not None:
+                return f"{instead} takes over from {by}, which found {finding} between {way}"
+        dispatcher.found(found, now_s)
         return f"found {finding} between {way}"
 
     def _lose(self, dispatcher: Dispatcher, now_s: float) -> str:

@@ -22,6 +22,8 @@ class DispatchLedger:
     def __init__(self) -> None:
         self.holder: dict[str, str] = {}
         self.lies: dict[str, str] = {}
+        self.baskets: dict[str, str] = {}
+        """Where that is the basket of a robot that has failed: whose."""
         self.loads: dict[str, float] = {}
         self.delivered: set[str] = set()
         self.returned: set[str] = set()
@@ -39,17 +41,23 @@ class DispatchLedger:
         if end.outcome is not LegOutcome.DONE:
             return
         assert name not in self.delivered | self.returned | self.lost | self.fetched, what
-        if leg.action in FETCHES and name not in self.lies:
+        if leg.action is LegAction.TAKE and name in self.holder:
+            # It came back while its things were fetched, and people took this one out all the same.
+            assert self.baskets.pop(name, None) == self.holder[name] != robot, what
+            self.holder[name] = robot
+        elif leg.action in FETCHES and name not in self.lies:
             assert name not in self.holder, what
             assert now_s >= leg.request.earliest_s - 1e-6, what
             load = leg.request.load if isinstance(leg.request, Transport) else largest
             self.holder[name], self.loads[name] = robot, load
         elif leg.action is LegAction.TAKE or leg.action in FETCHES:
             assert self.lies.pop(name, None) == leg.place, what
+            self.baskets.pop(name, None)
             self.holder[name] = robot
         elif leg.action is LegAction.GIVE:
             assert self.holder.pop(name, None) == robot, what
             self.lies[name] = leg.place
+            self.baskets.pop(name, None)
         elif leg.action in BRINGS:
             assert self.holder.pop(name, None) == robot, what
             assert isinstance(leg.request, Escort | Transport), what
@@ -63,19 +71,28 @@ class DispatchLedger:
         aboard = [self.loads[each] for each, who in self.holder.items() if who == robot]
         assert sum(aboard) <= capacity + 1e-9, f"{what}: {robot} carries {sum(aboard)}"
 
-    def failed(self, robot: str, place: str, lost: Iterable[str]) -> None:
-        """What a robot had lies where it stands, or is lost."""
+    def failed(self, robot: str, place: str, lost: Iterable[str], led: Iterable[str]) -> None:
+        """What a robot had lies where it stands, or is lost; whom it led is in no basket."""
         for name in [name for name, who in self.holder.items() if who == robot]:
             del self.holder[name]
             if name in lost:
                 self.lost.add(name)
-            else:
-                self.lies[name] = place
+                continue
+            self.lies[name] = place
+            if name not in led:
+                self.baskets[name] = robot
+
+    def back(self, robot: str) -> None:
+        """A robot works again, with what nobody has fetched meanwhile."""
+        for name in [name for name, who in self.baskets.items() if who == robot]:
+            if self.lies.pop(name, None) is not None:
+                self.holder[name] = robot
 
     def gone(self, name: str) -> None:
         """No robot has it, and it lies nowhere."""
         self.holder.pop(name, None)
         self.lies.pop(name, None)
+        self.baskets.pop(name, None)
 
 
 class WitnessedDispatcher(Dispatcher):
@@ -93,11 +110,16 @@ class WitnessedDispatcher(Dispatcher):
         self, robot: str, at: str | None, reason: str, now_s: float, *, lost: Iterable[str] = ()
     ) -> None:
         stranded = self.stranded()
+        led = {view.name for view in self.views() if isinstance(view.request, Escort)}
         super().robot_failed(robot, at, reason, now_s, lost=lost)
         place = self.building.graph.places[self.fleet.robots[robot].place].name
         kept = {name: self.ledger.holder.pop(name) for name in stranded & self.ledger.holder.keys()}
-        self.ledger.failed(robot, place, set(lost))
+        self.ledger.failed(robot, place, set(lost), led)
         self.ledger.holder.update(kept)
+
+    def robot_back(self, robot: str, at: str, now_s: float) -> None:
+        super().robot_back(robot, at, now_s)
+        self.ledger.back(robot)
 
     def item_lost(self, name: str, reason: str, now_s: float) -> None:
         super().item_lost(name, reason, now_s)
@@ -138,6 +160,9 @@ class WitnessedDispatcher(Dispatcher):
             assert numbers[items[name].robot or 0] == who, (name, who)
         for name in ledger.lies:
             assert items[name].state in ("left", "stranded"), (name, items[name])
+        for name, who in ledger.baskets.items():
+            if name in ledger.lies:
+                assert items[name].held_by == numbers.index(who), (name, who)
         aboard = {name for name, item in items.items() if item.state == "aboard"}
         assert aboard <= ledger.holder.keys()
         for view in self.views():

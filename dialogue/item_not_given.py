@@ -6,12 +6,11 @@ from mend.tasks.resolution import Resolution
 
 script = offer_script(
     Offer(
-        question="Please put the {item} into my basket.{why} Will you do that?",
+        question="Please {put_in}.{why} Will you do that?",
         failed="I have now waited {times} to be given the {item}.",
-        yes_effect="You put the {item} into my basket; I go on once I feel something new in it "
-        "({attempt}).",
+        yes_effect="You {put_in}; I go on once I feel something new in my basket ({attempt}).",
         help=Help.PUT_IN,
-        request="Please put the {item} into my basket. I wait until I feel something new in it.",
+        request="Please {put_in}. I wait until I feel something new in my basket.",
         resolution=Resolution.ROBOT_FINISH,
         thanks="Thank you. I feel something new in my basket.",
         unchanged="I feel something new in my basket.",

@@ -12,6 +12,7 @@ FIELDS = frozenset(
     {
         "object",
         "item",
+        "put_in",
         "message",
         "person",
         "with_object",
@@ -28,7 +29,8 @@ FIELDS = frozenset(
     }
 )
 """`item`: what is carried for people, `message`: what they are told, and `person`:
-who is escorted.
+who is escorted. `put_in`: what is to be done so that the robot has the item, which may be in the
+basket of another one (`put the mail into my basket`).
 `with_object`: ` with the cup` with a blank before it, or nothing where there is no object.
 `why`: what the robot sensed, as a sentence with a blank before it, or nothing. `attempt`:
 `attempt 1 of 3`. `times`: how often this has happened. `again`, `later`, `go_on`: what the robot
@@ -43,6 +45,7 @@ def word(text: str, issue: Issue, outlook: Outlook) -> str:
     return text.format(
         **guesses,
         item=spoken(issue.item or issue.name),
+        put_in=_put_in(issue),
         message=issue.message or "",
         person=issue.person or "somebody",
         object=spoken(issue.object or issue.item or issue.name),
@@ -57,6 +60,13 @@ def word(text: str, issue: Issue, outlook: Outlook) -> str:
         later=outlook.if_it_fails(),
         go_on=outlook.going_on(),
     )
+
+
+def _put_in(issue: Issue) -> str:
+    item = f"the {spoken(issue.item or issue.name)}"
+    if issue.held_by is None:
+        return f"put {item} into my basket"
+    return f"take {item} out of the basket of {spoken(issue.held_by)} and put it into mine"
 
 
 def sentence(clause: str) -> str:

@@ -28,6 +28,7 @@ from mend.robots.link.messages import (
     IssueDetected,
     Look,
     Looked,
+    NoteTaken,
     Picture,
     PoseLayout,
     Poses,
@@ -108,6 +109,7 @@ class Robot:
             room=next((each.room for each in subsystems if each.room is not None), None),
             keeps_clear=all(each.keeps_clear for each in subsystems),
             avoids_ways=any(each.avoids_ways for each in subsystems),
+            notes_taken=any(each.notes_taken for each in subsystems),
         )
 
     @property
@@ -255,6 +257,9 @@ class Robot:
             case Avoid():
                 for each in self._subsystems:
                     each.avoid(body)
+            case NoteTaken():
+                for each in self._subsystems:
+                    each.note_taken(body)
             case TakePicture():
                 self._take_picture(command_id, body)
             case Shutdown():

@@ -31,7 +31,7 @@ TELL_PLACE = "tell_place"
 class Promise:
     """What was promised: `help` is a dialogue's word for it (`place`, `put_back`, ...).
 
-    `in_the_way` is the part that is to be cleared out of the way, if it is one.
+    `in_the_way` is the part, or the robot, that is to be cleared out of the way, if it is one.
     """
 
     help: str

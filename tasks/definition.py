@@ -60,6 +60,11 @@ class BehaviorNode(StrictModel):
         return self._text("item")
 
     @property
+    def held_by(self) -> str | None:
+        """In the basket of which robot it is what the behavior is to get, if it is in one."""
+        return self._text("held_by")
+
+    @property
     def message(self) -> str | None:
         """What the behavior tells people, if it tells anything."""
         return self._text("message")

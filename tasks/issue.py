@@ -27,7 +27,8 @@ class Issue:
     0 before the first. `reason` is a clause that says what the robot sensed, empty if it does not
     say; `sensed` how it came to know. `interrupts`: the robot does not go on by itself.
     `guesses`: where it may be if it is lost, likeliest first (`at F1-101`). `item`: what the leaf
-    carries for people, `message`: what it tells them, and `person`: whom it escorts, if it does.
+    carries for people, `held_by`: in the basket of which robot that is, where it is in one,
+    `message`: what it tells them, and `person`: whom it escorts, if it does.
     """
 
     kind: str
@@ -44,3 +45,4 @@ class Issue:
     item: str | None = None
     message: str | None = None
     person: str | None = None
+    held_by: str | None = None

@@ -108,6 +108,9 @@ class DispatchState:
         if item.robot is not None:
             return f"aboard {self.setting.robots[item.robot].name}"
         assert item.place is not None, "it lies somewhere"
+        if item.held_by is not None:
+            held_by = self.setting.robots[item.held_by].name
+            return f"in the basket of {held_by} at {self.building.graph.places[item.place].name}"
         return f"at {self.building.graph.places[item.place].name}"
 
 

@@ -17,6 +17,7 @@ from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd
 from mend.fleet.dispatch.legs_at_work import LegsAtWork, leg_action
 from mend.fleet.dispatch.setting import FleetSetting
 from mend.fleet.dispatch.snapshot import DispatcherSnapshot, restore, snapshot_of
+from mend.fleet.dispatch.taking_over import TakingOver
 from mend.fleet.dispatch.views import stops_by_booking, view_of
 from mend.fleet.requests import LegAction
 from mend.fleet.scheduling.replanning.events import (
@@ -56,6 +57,7 @@ class Dispatcher:
         self._giving_up = GivingUp(self._state)
         self._desk = BookingDesk(self._state, self._giving_up)
         self._legs = LegsAtWork(self._state, self._giving_up)
+        self._taking_over = TakingOver(self._state)
         self._state.fleet.advance(now_s)
 
     @classmethod
@@ -215,12 +217,27 @@ class Dispatcher:
             self._state.apply(WayOpen((a, b)), f"{by} found the way between {a} and {b} open", ())
         else:
             until_s = self.now_s + self._state.policy.forget_s
-            until_s = until_s if found.until_s is None else found.until_s
-            until_s = REOPENS_EVERY_S * ceil(max(until_s, self.now_s + 1.0) / REOPENS_EVERY_S)
+            closing = self._closing(a, b, until_s if found.until_s is None else found.until_s)
+            until_s = self.now_s + closing.retry_s
             what = _FOUND[found.finding]
             why = f"{by} found {what} between {a} and {b}, which counts until {until_s:g} s"
-            self._state.apply(DoorClosed((a, b), until_s - self.now_s), why, ())
+            self._state.apply(closing, why, ())
         self._state.settle()
+
+    def take_over(self, found: Found, now_s: float) -> str | None:
+        """Have another robot do the leg of one whose way is barred, if one can do that without
+        anything being late and without more help of people; who that is.
+
+        The way then counts as closed until it would be tried again. Raises `NotFoundError`.
+        """
+        self._advance(now_s)
+        a, b = (self.building.find(each) for each in found.between)
+        closing = self._closing(a, b, self.now_s + self._state.policy.retry_after_s)
+        return self._taking_over.by_another(found, closing)
+
+    def _closing(self, a: str, b: str, until_s: float) -> DoorClosed:
+        until_s = REOPENS_EVERY_S * ceil(max(until_s, self.now_s + 1.0) / REOPENS_EVERY_S)
+        return DoorClosed((a, b), until_s - self.now_s)
 
     # --- what is known ----------------------------------------------------------------------------
 
@@ -252,6 +269,11 @@ class Dispatcher:
     def closed_until_s(self) -> Mapping[frozenset[str], float]:
         """The ways that were found blocked or closed, and until when that counts."""
         return self._state.fleet.closed_until_s()
+
+    def taken_out(self) -> Mapping[str, frozenset[str]]:
+        """By robot, the requests whose things were taken out of its basket for others, of which it
+        has to be told before it sets out."""
+        return self._state.fleet.taken_out()
 
     def views(self) -> list[RequestView]:
         """All requests that are known, in the order in which they came."""

@@ -106,6 +106,8 @@ class KeptItem(StrictModel):
     overdue: bool
     put_off: str | None
     withdrawn: bool
+    held_by: Number | None = None
+    taken_from: tuple[Number, ...] = ()
 
 
 class KeptClosing(StrictModel):
@@ -225,6 +227,8 @@ def _kept_item(item: TrackedItem, names: tuple[str, ...]) -> KeptItem:
         overdue=item.overdue,
         put_off=item.put_off,
         withdrawn=item.withdrawn,
+        held_by=item.held_by,
+        taken_from=tuple(sorted(item.taken_from)),
     )
 
 
@@ -248,6 +252,8 @@ def _item(kept: KeptItem, numbers: dict[str, int]) -> TrackedItem:
         kept.overdue,
         kept.put_off,
         kept.withdrawn,
+        kept.held_by,
+        set(kept.taken_from),
     )
 
 

@@ -12,7 +12,8 @@ class Leg(StrictModel):
 
     `number` counts the legs of this robot. It is expected to begin at the place at `begins_s` and
     to be done at `done_s`; it may not begin before `not_before_s`, nor before `waits_for`, another
-    robot, has given what is to be taken.
+    robot, has given what is to be taken. `held_by`: in the basket of which robot, which works no
+    more, is what is to be taken.
     """
 
     robot: str
@@ -25,6 +26,7 @@ class Leg(StrictModel):
     done_s: float
     not_before_s: float
     waits_for: str | None = None
+    held_by: str | None = None
 
     def is_same(self, other: "Leg") -> bool:
         """Whether it is the same thing to do, whenever that is expected."""

@@ -112,14 +112,20 @@ class LegsAtWork:
         return self._leg(robot, stops[0])
 
     def _may_set_out(self, robot: str, stop: NextStop) -> bool:
-        """Whether it does nothing, and nobody still does something with the item that is to be
-        broken off."""
+        """Whether it does nothing, and nobody still does something that is to be broken off with
+        the item, or with what it has aboard: people may be about to take that out of its basket.
+        """
         if robot in self._state.under_way:
             return False
+        number = self._number(robot)
         return not any(
-            leg.booking == stop.item and not self._state.fleet.robots[other].held
+            not self._state.fleet.robots[other].held
+            and (leg.booking == stop.item or self._state.fleet.items[leg.booking].robot == number)
             for other, leg in self._state.under_way.items()
         )
+
+    def _number(self, robot: str) -> int:
+        return list(self._state.fleet.robots).index(robot)
 
     def _leg(self, robot: str, stop: NextStop) -> Leg:
         request, item = self._state.bookings[stop.item].request, self._state.fleet.items[stop.item]
@@ -140,6 +146,7 @@ class LegsAtWork:
             done_s=stop.done_s,
             not_before_s=not_before_s,
             waits_for=stop.partner if stop.action is Action.TAKE else None,
+            held_by=None if item.held_by is None else self._state.setting.robots[item.held_by].name,
         )
 
     def _require_under_way(self, leg: Leg) -> None:
@@ -157,7 +164,7 @@ class LegsAtWork:
         item = self._state.fleet.items.get(leg.booking)
         if item is None or not (item.open or item.withdrawn):
             return False
-        if leg.action is LegAction.TAKE and not self._state.fleet.is_there(leg.robot):
+        if leg.action is LegAction.TAKE and not self._state.fleet.may_have_loaded(leg.robot):
             raise ConflictError(f"'{leg.booking}' cannot be taken: it was not left at {leg.place}")
         return True
 

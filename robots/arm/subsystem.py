@@ -28,6 +28,7 @@ from mend.robots.link.messages import (
     Avoid,
     Look,
     Looked,
+    NoteTaken,
     PoseLayout,
     Poses,
     ReachLimits,
@@ -79,6 +80,7 @@ class ArmSubsystem:
     keeps_clear = False
     driven = None
     avoids_ways = False
+    notes_taken = False
 
     @property
     def behaviors(self) -> Collection[str]:
@@ -105,6 +107,9 @@ class ArmSubsystem:
 
     def avoid(self, told: Avoid) -> None:
         """It goes nowhere."""
+
+    def note_taken(self, told: NoteTaken) -> None:
+        """It has no basket."""
 
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> ArmExecution:
         """What a start command asks for, not begun. Raises `CommandError`."""

@@ -1,11 +1,12 @@
 """A base that drives: sending it on its way, a control cycle at a time."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from mend.maps.building.building import ON_FLOOR_M
 from mend.maps.building.cabin import CABIN_M
 from mend.robots.base.basket import Basket, LoadSense, NoBasket
 from mend.robots.base.battery import Battery, MainsPower
@@ -27,6 +28,8 @@ from mend.robots.link.messages import Driven
 SLOW_M_S, SLOW_RAD_S = 0.05, 0.1
 _SEES_OUT = 0.05
 """More of its beams lead out of an open cabin than fail to come back."""
+_ABOUT_THERE_M = 0.3
+"""Robots say by so much where they are, at worst, and lasers what they see."""
 _BEHIND_M = 0.2
 """A door is so near to where the laser sees it, by the map."""
 
@@ -35,12 +38,14 @@ _BEHIND_M = 0.2
 class Barrier:
     """What leaves a base no way on, so far from its rim; `door` if its map has one there.
 
+    `robot`: the one that it is, where one that has failed stands there as far as is known.
     `between`: the neighbouring places of its map between which that is, where it is on a lane.
     """
 
     away_m: float
     door: str | None
     between: tuple[str, str] | None = None
+    robot: str | None = None
 
 
 class Base(Effector[BaseBody]):
@@ -68,7 +73,11 @@ class Base(Effector[BaseBody]):
         self.company = Company(self.companion, body.time_s)
         self.whereabouts: Whereabouts = whereabouts or AlwaysKnown()
         self.closed = ClosedWays()
+        self.asks_after_s = 0.0
+        """So long others have, once they know, to do what it is about before it asks people."""
         self.at_rest = True
+        self.failed: Mapping[str, tuple[float, float, float]] = {}
+        """Where robots stand that work no more, as it was told (base frame)."""
         self._speed = 1.0
         self._surroundings = Surroundings()
         self._jumps = Jumps()
@@ -147,11 +156,21 @@ class Base(Effector[BaseBody]):
         away_m = math.dist(met, (here.x, here.y))
         share = 1.0 + _BEHIND_M / max(away_m, 1e-6)
         beyond = here.x + share * (met[0] - here.x), here.y + share * (met[1] - here.y)
+        robot = self._failed_at(met, here.z)
         return Barrier(
             away_m=max(0.0, away_m - self.body.radius_m),
-            door=self.ways.door_at(here, beyond),
+            door=self.ways.door_at(here, beyond) if robot is None else None,
             between=self.ways.lane_at(here, met),
+            robot=robot,
         )
+
+    def _failed_at(self, met: tuple[float, float], z: float) -> str | None:
+        """The robot that has failed and stands where something is met."""
+        within_m = self.body.radius_m + _ABOUT_THERE_M
+        for robot, (x, y, height) in self.failed.items():
+            if math.dist(met, (x, y)) <= within_m and abs(height - z) < ON_FLOOR_M:
+                return robot
+        return None
 
     def bar(self, between: tuple[str, str]) -> None:
         """Remember that what leaves it no way on is between these places, the one behind first."""

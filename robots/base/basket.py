@@ -34,10 +34,18 @@ class BasketMemory:
 
     def note_taken(self, item: str, place: str, load_kg: float) -> None:
         """Something was taken out at a place, and the load cell now shows this."""
-        del self.items[item]
+        self.items.pop(item, None)
         self.expected_kg = load_kg
         self.offered = None
         self.handed_over[item] = place
+
+    def forget(self, item: str) -> None:
+        """Something was taken out for another robot, so that the basket weighs less by it."""
+        weight_kg = self.items.pop(item, 0.0)
+        if self.expected_kg is not None:
+            self.expected_kg -= weight_kg
+        if self.offered is not None and self.offered[0] == item:
+            self.offered = None
 
 
 class Basket(Protocol):

@@ -34,6 +34,7 @@ from mend.robots.link.messages import (
     Location,
     Look,
     Looked,
+    NoteTaken,
     PoseLayout,
     Poses,
     ReportBody,
@@ -89,6 +90,18 @@ class BaseSubsystem:
         """Keep off ways where others lead."""
         ways = {frozenset(each.between): each.until for each in told.ways}
         self.effector.closed.tell(ways)
+        self.effector.asks_after_s = told.asks_after_s
+        self.effector.failed = {each.robot: (each.x, each.y, each.z) for each in told.failed}
+
+    @property
+    def notes_taken(self) -> bool:
+        """Whether it has a basket."""
+        return self.effector.basket.most_items > 0
+
+    def note_taken(self, told: NoteTaken) -> None:
+        """Forget what was taken out of its basket for others."""
+        for item in told.items:
+            self.effector.basket.memory.forget(item)
 
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> BaseExecution:
         """What a start command asks for, not begun. Raises `CommandError`."""

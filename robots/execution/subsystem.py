@@ -12,6 +12,7 @@ from mend.robots.link.messages import (
     Driven,
     Look,
     Looked,
+    NoteTaken,
     PoseLayout,
     Poses,
     ReachLimits,
@@ -59,6 +60,15 @@ class Subsystem(Protocol):
 
     def avoid(self, told: Avoid) -> None:
         """Keep off ways where others lead."""
+        ...
+
+    @property
+    def notes_taken(self) -> bool:
+        """Whether it has a basket out of which things may be taken for others."""
+        ...
+
+    def note_taken(self, told: NoteTaken) -> None:
+        """Forget what was taken out of its basket for others."""
         ...
 
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> AnyExecution:

@@ -131,6 +131,7 @@ class Detection(Message):
     seen, or not seen, gives none. `explanation` is a clause that people are told: what the robot
     sensed. `guesses`: where a robot may be that is lost, likeliest first (`at F1-101`).
     `between`: the neighbouring places between which a way is barred, the one it came from first.
+    `robot`: that which is in the way, if it is a robot that has failed.
     """
 
     camera: Word
@@ -145,6 +146,7 @@ class Detection(Message):
     explanation: Sentence = ""
     guesses: Annotated[list[Word], Field(max_length=MOST_GUESSES)] = []
     between: Annotated[list[Word], Field(max_length=2)] = []
+    robot: Word | None = None
 
 
 LASER = "laser"
@@ -338,7 +340,8 @@ class WayFound(Message):
     """What a robot has found of a way that it drives, without asking anybody.
 
     `between`: neighbouring places of its map, the one it came from first. It goes round where that
-    is `blocked`, a `door_closed` or an `elevator_dead`; it is `open` once the robot has passed it.
+    is `blocked`, a `door_closed` or an `elevator_dead`, or waits before it asks, as `avoid` says;
+    it is `open` once the robot has passed it.
     """
 
     type: Literal["way_found"] = "way_found"
@@ -503,14 +506,38 @@ class ClosedWay(Message):
     until: Time
 
 
+class FailedRobot(Message):
+    """A robot that works no more stands there, and may be pushed aside (base frame, metres)."""
+
+    robot: Word
+    x: Coordinate
+    y: Coordinate
+    z: Coordinate
+
+
 class Avoid(Message):
     """Keep off these ways where others lead; all that were told before are open again.
 
-    It changes nothing else that the robot does, at whatever time it comes.
+    It changes nothing else that the robot does, at whatever time it comes. `asks_after_s`: before
+    it asks people to free a way, it reports `way_found`, once in each execution, and waits so long,
+    as another robot may do instead what it is about. `failed`: what it sees where one of these
+    stands is that robot.
     """
 
     type: Literal["avoid"] = "avoid"
     ways: Annotated[list[ClosedWay], Field(max_length=MOST)] = []
+    asks_after_s: Span = 0.0
+    failed: Annotated[list[FailedRobot], Field(max_length=MOST)] = []
+
+
+class NoteTaken(Message):
+    """People have taken these `items` out of the robot's basket, for other robots.
+
+    It has them no more and misses them in no basket. What it does not have changes nothing.
+    """
+
+    type: Literal["note_taken"] = "note_taken"
+    items: Annotated[list[Word], Field(max_length=MOST)]
 
 
 class Hold(Message):
@@ -556,6 +583,7 @@ CommandBody = Annotated[
     | Look
     | SlowDown
     | Avoid
+    | NoteTaken
     | Hold
     | Intervene
     | TakePicture
@@ -575,7 +603,7 @@ class Hello(Message):
     `shows`: what its `poses` hold; None if it sends none. `room`: without it no other robot of its
     run works while its arm does not rest. `keeps_clear`: it moves about and keeps clear of others
     by what it senses itself, so that no space is kept for it. `driven`: None without a base.
-    `avoids_ways`: it takes `avoid`.
+    `avoids_ways`: it takes `avoid`. `notes_taken`: it takes `note_taken`.
     """
 
     type: Literal["hello"] = "hello"
@@ -594,6 +622,7 @@ class Hello(Message):
     keeps_clear: bool = False
     driven: Driven | None = None
     avoids_ways: bool = False
+    notes_taken: bool = False
 
 
 class Report(Message):

@@ -25,7 +25,7 @@ from mend.server.fleets.fleet_news import FleetNews
 from mend.server.fleets.fleet_record import Errand, FleetRecord
 from mend.server.fleets.fleets import KIND
 from mend.server.fleets.leg_execution import LegExecution, LegTurn
-from mend.server.fleets.leg_task import doable_kinds, require_doable
+from mend.server.fleets.leg_task import doable_kinds, require_doable, taken_out
 from mend.server.fleets.making_way import who_makes_way
 from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.place_names import PlaceNames
@@ -46,6 +46,10 @@ log = logging.getLogger(__name__)
 
 LOOKS_AGAIN_S = 5.0
 """While a robot waits at the place of its leg, the leg is looked after that often (site's time)."""
+
+
+OTHERS_S = 3.0
+"""So long a robot whose way is barred lets others go instead before it asks people (its time)."""
 
 
 class FleetAtWork:
@@ -94,6 +98,8 @@ class FleetAtWork:
         self._hears: asyncio.Task[None] | None = None
         self._set_out: dict[str, Odometer | None] = {}
         """What robots had driven when they set out for the leg that they are on."""
+        self._told_others: dict[str, tuple[int, Finding, frozenset[str]]] = {}
+        """By robot, what it has last found of which way, and on which leg."""
         self._kept: FleetRecord | None = None
         self._noted: list[ev.Event] = []
         self._alarms = Alarms(lambda: self.now_s)
@@ -106,6 +112,7 @@ class FleetAtWork:
         """Begin to work; legs that were under way go on."""
         self._site.changed = self._changed.set
         self._site.show_bases()
+        self._site.hear_of_ways(OTHERS_S)
         self._changed.set()
         self._main = asyncio.create_task(self._work(), name=f"fleet of {self._site.id}")
         self._hears = asyncio.create_task(self._hear(), name=f"findings at {self._site.id}")
@@ -135,7 +142,10 @@ class FleetAtWork:
                     self._send(robot, to, None)
             await self._keep()
             under_way = self.dispatcher.legs_under_way()
-            self._site.keep_off(self.dispatcher.closed_until_s())
+            robots = self.dispatcher.fleet.robots.items()
+            failed = [name for name, each in robots if not each.works]
+            self._site.keep_off(self.dispatcher.closed_until_s(), failed)
+            self._site.note_taken(taken_out(self.dispatcher))
             for execution, _ in self._legs.values():
                 execution.look_again()
             self._alarms.ring()
@@ -234,22 +244,41 @@ class FleetAtWork:
 
     async def _robot_found(self, found: Found) -> None:
         async with self._told():
-            if not self._is_news(found):
+            leg = self._leg_of(found.by)
+            if self._is_told_already(found, leg):
                 return
             try:
-                await asyncio.to_thread(self.dispatcher.found, found, self.now_s)
+                if self._is_news(found, leg):
+                    await asyncio.to_thread(self.dispatcher.found, found, self.now_s)
+                elif not await self._is_taken_over(found, leg):
+                    return
                 self.closed_ways.note(found, found.by)
                 self._note_found(found)
             except RefusalError as error:
                 log.info("what %s found of its way changes no plan: %s", found.by, error)
 
-    def _is_news(self, found: Found) -> bool:
+    async def _is_taken_over(self, found: Found, leg: Leg | None) -> bool:
+        """Whether another robot does a leg on whose way nobody gets on."""
+        if leg is None or found.finding is Finding.OPEN:
+            return False
+        return await asyncio.to_thread(self.dispatcher.take_over, found, self.now_s) is not None
+
+    def _is_told_already(self, found: Found, leg: Leg | None) -> bool:
+        """Whether a robot has told others of it before, and asks people about it now."""
+        if leg is None:
+            return False
+        told = (leg.number, found.finding, frozenset(found.between))
+        before, self._told_others[leg.robot] = self._told_others.get(leg.robot), told
+        return told == before and found.finding is not Finding.OPEN
+
+    def _leg_of(self, robot: str | None) -> Leg | None:
+        return next((e for e in self.dispatcher.legs_under_way() if e.robot == robot), None)
+
+    def _is_news(self, found: Found, leg: Leg | None) -> bool:
         """Whether what a robot has found is something for others to go by."""
         closed, graph = self.dispatcher.closed_until_s(), self.dispatcher.building.graph
         if found.finding is Finding.OPEN:
             return frozenset(found.between) in closed
-        legs = self.dispatcher.legs_under_way()
-        leg = next((each for each in legs if each.robot == found.by), None)
         return is_led_round(graph, closed, found, found.between[1] if leg is None else leg.place)
 
     def _note_found(self, found: Found) -> None:
@@ -411,7 +440,7 @@ class FleetAtWork:
                 raise ConflictError(f"robot '{robot}' is out of service already")
             self.out_of_service[robot] = reason
             self._note(f"took {robot} out of service: {reason}", author, robot, in_service=False)
-            leg = next((e for e in self.dispatcher.legs_under_way() if e.robot == robot), None)
+            leg = self._leg_of(robot)
             errand = self._errands.going.get(robot)
             if leg is None and self.dispatcher.fleet.robots[robot].works:
                 self.dispatcher.robot_failed(robot, self._met_at(robot), reason, self.now_s)

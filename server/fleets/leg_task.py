@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from mend.documents.validation import describe_mistake
 from mend.errors import WrongInputError
 from mend.fleet.dispatch.booking import AnyRequest
+from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Leg
 from mend.fleet.requests import (
     REQUESTS,
@@ -129,7 +130,23 @@ def task_of(leg: Leg, place: str) -> TaskTreeDefinition:
     if leg.action not in BEHAVIORS:
         raise WrongInputError(f"no behavior of a robot does '{leg.action}'")
     parameters = {"place": place, **_parameters(leg.request, leg.booking)}
+    if leg.held_by is not None and leg.action is LegAction.TAKE:
+        parameters["held_by"] = leg.held_by
     return _leaf(BEHAVIORS[leg.action], parameters)
+
+
+def taken_out(dispatcher: Dispatcher) -> dict[str, list[str]]:
+    """By robot, what it is to be told that others have, as it calls these things."""
+    taken = {robot: names for robot, names in dispatcher.taken_out().items() if names}
+    requests = {view.name: view.request for view in dispatcher.views()} if taken else {}
+    return {
+        robot: [
+            item_of(request.what, name)
+            for name in sorted(names)
+            if isinstance(request := requests.get(name), Transport)
+        ]
+        for robot, names in taken.items()
+    }
 
 
 def _parameters(request: AnyRequest, booking: str) -> dict[str, Any]:

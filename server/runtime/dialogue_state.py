@@ -247,6 +247,7 @@ def issue_of(raised: ev.IssueRaised) -> Issue:
         item=raised.item,
         message=raised.message,
         person=raised.person,
+        held_by=raised.held_by,
     )
 
 

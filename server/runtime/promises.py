@@ -36,6 +36,8 @@ class Promises:
         raised = dialogue.raised
         part = None if raised.detection is None else raised.detection.part
         in_the_way = part if part in state.scene.objects else None
+        if raised.detection is not None and raised.detection.robot is not None:
+            in_the_way = raised.detection.robot
         promise = Promise(
             str(awaiting.help), raised.item or raised.object, raised.place, in_the_way
         )

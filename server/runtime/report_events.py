@@ -130,6 +130,7 @@ class ReportEvents:
             item=leaf.item,
             message=leaf.message,
             person=leaf.person,
+            held_by=leaf.held_by,
             execution=execution.id,
             step=body.step,
             interrupts=body.interrupts,

@@ -2,12 +2,22 @@
 
 import asyncio
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 from uuid import UUID, uuid4
 
 from mend.errors import ConflictError
-from mend.robots.link.messages import Avoid, ClosedWay, Held, Hello, Holding, Poses, Report
+from mend.robots.link.messages import (
+    Avoid,
+    ClosedWay,
+    FailedRobot,
+    Held,
+    Hello,
+    Holding,
+    NoteTaken,
+    Poses,
+    Report,
+)
 from mend.server.journal.journal import Entry, Journal, Receipt
 from mend.server.poses.bases import SeenBase, in_scene
 from mend.server.robots.registry import RobotRegistry
@@ -65,6 +75,9 @@ class Site:
         """Told when a robot has come, when a run has given robots back, and when time has passed
         for which somebody had waited."""
         self._closed: Mapping[frozenset[str], float] = {}
+        self._taken: Mapping[str, Sequence[str]] = {}
+        self._asks_after_s = 0.0
+        self._failed: Mapping[str, Point] = {}
         self._restarts = 0
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -144,21 +157,52 @@ class Site:
                 return True
         return False
 
-    def keep_off(self, closed: Mapping[frozenset[str], float]) -> None:
-        """Have its robots keep off ways between neighbouring places, each until a time (s).
-
-        Robots that do not know of such things go on as they do.
-        """
-        if closed == self._closed:
-            return
-        self._closed = dict(closed)
+    def hear_of_ways(self, asks_after_s: float) -> None:
+        """Somebody hears what its robots find of ways: each waits so long before it asks people."""
+        self._asks_after_s = asks_after_s
         for robot in self._frames:
             if self.is_connected(robot):
                 self._tell_ways(robot)
 
+    def keep_off(
+        self, closed: Mapping[frozenset[str], float], failed: Collection[str] = ()
+    ) -> None:
+        """Have its robots keep off ways between neighbouring places, each until a time (s), and
+        know where robots stand that have `failed`.
+
+        Robots that do not know of such things go on as they do.
+        """
+        standing = {each: at for each in failed if (at := self._stands(each)) is not None}
+        if (closed, standing) == (self._closed, self._failed):
+            return
+        self._closed, self._failed = dict(closed), standing
+        for robot in self._frames:
+            if self.is_connected(robot):
+                self._tell_ways(robot)
+
+    def _stands(self, robot: str) -> Point | None:
+        """About where a robot says that it is; None where it has said nothing yet."""
+        where = self.whereabouts(robot)
+        return None if where is None else (round(where[0], 1), round(where[1], 1), where[2])
+
+    def note_taken(self, taken: Mapping[str, Sequence[str]]) -> None:
+        """Have robots know what people have taken out of their baskets for others, by robot."""
+        before, self._taken = self._taken, {each: [*items] for each, items in taken.items()}
+        for robot, items in self._taken.items():
+            if set(items) - set(before.get(robot, ())) and self.is_connected(robot):
+                self._tell_taken(robot)
+
     def _told_on_coming(self, robot: str) -> None:
-        if self._closed:
+        if self._closed or self._asks_after_s or self._failed:
             self._tell_ways(robot)
+        if self._taken.get(robot):
+            self._tell_taken(robot)
+
+    def _tell_taken(self, robot: str) -> None:
+        hello = self._registry.hello(robot)
+        if hello is not None and hello.notes_taken:
+            body = NoteTaken(items=[*self._taken[robot]])
+            self._registry.send(robot, str(uuid4()), body, renews=False)
 
     def _tell_ways(self, robot: str) -> None:
         hello = self._registry.hello(robot)
@@ -167,7 +211,15 @@ class Site:
                 ClosedWay(between=sorted(way), until=until_s)
                 for way, until_s in self._closed.items()
             ]
-            self._registry.send(robot, str(uuid4()), Avoid(ways=ways), renews=False)
+            frame = self._frames[robot]
+            failed = [
+                FailedRobot(robot=name, x=x, y=y, z=z)
+                for name, at in self._failed.items()
+                if name != robot
+                for (x, y), z in [(frame.to_robot(at[0], at[1]), at[2])]
+            ]
+            body = Avoid(ways=ways, asks_after_s=self._asks_after_s, failed=failed)
+            self._registry.send(robot, str(uuid4()), body, renews=False)
 
     # --- Its world ----------------------------------------------------------------------------
 

@@ -82,6 +82,7 @@ class Buildings:
                 for name, (x, y) in each.items()
             },
             _maps(building, places, options.localizer),
+            setup.robots,
         )
         robots = [
             Robot(

@@ -2,7 +2,8 @@
 
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -110,12 +111,15 @@ class BuildingWorld:
         goods: Goods,
         places: Mapping[str, FloorPose],
         maps: Mapping[str, FloorMap] | None = None,
+        names: Sequence[str] = (),
     ) -> None:
         """Robots find their way by `maps`; without, they know where they are.
 
-        `places`: where people are, by the names that robots know.
+        `places`: where people are, by the names that robots know. `names`: those of the robots, by
+        which people tell them apart.
         """
         self.building = building
+        self._names = names
         self.elevators = ElevatorBank(building)
         self.wrong_floors = options.wrong_floors
         self.touches = self.carried = 0
@@ -256,7 +260,12 @@ class BuildingWorld:
         people += self.guests.there.values()
         return [each.at for each in people if each is not but and each.at.floor == floor]
 
-    def _room_beside(self, place: FloorPose) -> FloorPose | None:
+    def _room_beside(
+        self,
+        place: FloorPose,
+        radius_m: float = PERSON_RADIUS_M,
+        who: BuildingRobot | None = None,
+    ) -> FloorPose | None:
         """Where somebody may stand who is at a place, off the lanes if there is room."""
         walls, lanes = self._segments(place.floor), self._lanes(place.floor)
         free = []
@@ -265,8 +274,8 @@ class BuildingWorld:
                 x, y = place.x + away_m * math.cos(turn), place.y + away_m * math.sin(turn)
                 at = FloorPose(place.floor, x, y)
                 seen = clearance_m((place.x, place.y), (x, y), walls) > 2.0 * KEEP_M
-                in_cabin = self.elevators.is_in_a_cabin(place.floor, x, y, PERSON_RADIUS_M)
-                if seen and not in_cabin and not self._touches(at, PERSON_RADIUS_M + KEEP_M):
+                in_cabin = self.elevators.is_in_a_cabin(place.floor, x, y, radius_m)
+                if seen and not in_cabin and not self._touches(at, radius_m + KEEP_M, who):
                     free.append(at)
         points = np.array([(at.x, at.y) for at in free]).reshape(-1, 2)
         off_m = np.minimum(distances_m(points, lanes), _OFF_LANES_M)
@@ -330,6 +339,8 @@ class BuildingWorld:
         match intervention.act:
             case Act.BLOCK:
                 return self._step_in_the_way()
+            case Act.RELEASE if intervention.object in self._names:
+                return self._push_aside(self.robots[self._names.index(intervention.object)])
             case Act.RELEASE:
                 return self._make_way()
             case Act.PUT_IN:
@@ -433,6 +444,17 @@ class BuildingWorld:
         pressed = self._press_for_who_waits()
         done = bool(stepped_aside) or opened or pressed
         return "" if done else "nothing is in the way of any robot"
+
+    def _push_aside(self, robot: BuildingRobot) -> str:
+        """Somebody pushes a robot that stands off the lane, where there is room."""
+        on_floor = robot.at.floor in self.building.floors
+        if robot.moving or not on_floor:
+            return "the robot does not stand where anybody could push it aside"
+        to = self._room_beside(robot.at, robot.radius_m, robot)
+        if to is None:
+            return "there is no room to push the robot aside"
+        robot.stand(replace(to, yaw=robot.at.yaw))
+        return ""
 
     def _is_asked(self, bystander: Bystander) -> bool:
         """Whether a robot stands before them; where none does, everybody is meant."""

@@ -7,7 +7,7 @@ from mend.dialogue.conversation import Conversation
 from mend.dialogue.evidence import Change, LookOutcome, PutRight, contradiction, put_right
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.place_branch import Patience
-from mend.dialogue.script import Close, CloseReason, Expectation, Remark
+from mend.dialogue.script import Ask, Close, CloseReason, Expectation, Remark
 from mend.tasks.issue import Issue, Sensed
 from mend.tasks.resolution import Resolution
 
@@ -66,3 +66,24 @@ def test_what_an_arm_saw_in_its_way_has_no_other_way() -> None:
     script = blocked.script.make(Patience())
     assert Expectation.LED_ROUND not in script.put_right
     assert Expectation.LED_ROUND in script.variants[Sensed.BY_LASER].put_right
+
+
+def test_a_robot_that_has_failed_is_asked_to_be_pushed_aside_by_its_name() -> None:
+    issue = Issue(
+        kind="blocked",
+        robot="ada",
+        node="/0",
+        name="go to 101",
+        object=None,
+        place="F1-101",
+        step=1,
+        reason="robot_2 has failed, and has stood 0.3 m in front of me for 5 s; "
+        "it may be pushed aside",
+        sensed=Sensed.BY_LASER,
+    )
+    conversation = Conversation(SCRIPTS["blocked"].make(Patience()), issue, Outlook())
+    (ask,) = [each for each in conversation.open() if isinstance(each, Ask)]
+    assert ask.text == (
+        "I cannot go on. Robot 2 has failed, and has stood 0.3 m in front of me for 5 s; it may be "
+        "pushed aside. Can you clear the way?"
+    )

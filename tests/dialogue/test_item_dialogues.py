@@ -27,6 +27,7 @@ def conversation(
     reason: str = "I have come to F1-101 to collect the mail",
     message: str | None = None,
     outlook: Outlook | None = None,
+    held_by: str | None = None,
 ) -> Conversation:
     issue = Issue(
         kind=kind,
@@ -39,6 +40,7 @@ def conversation(
         reason=reason,
         item="post_bag",
         message=message,
+        held_by=held_by,
     )
     return Conversation(SCRIPTS[kind], issue, outlook or Outlook())
 
@@ -62,6 +64,17 @@ def test_an_item_is_asked_for_by_its_name() -> None:
         "Will you do that?"
     )
     assert ask.yes_final
+
+
+def test_what_is_in_the_basket_of_another_robot_is_asked_for_there() -> None:
+    talk = conversation("item_not_given", held_by="robot_2")
+    ask = asked(list(talk.open()))
+    assert ask.text == (
+        "Please take the post bag out of the basket of robot 2 and put it into mine. "
+        "I have come to F1 101 to collect the mail. Will you do that?"
+    )
+    assert "take the post bag out of the basket of robot 2 and put it into mine" in ask.yes_effect
+    assert "I wait until I feel something new in my basket." in said(list(talk.answer("yes")))
 
 
 @pytest.mark.parametrize(

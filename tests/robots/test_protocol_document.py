@@ -34,6 +34,7 @@ PARTS: dict[str, type[BaseModel]] = {
     "position": m.Position,
     "location": m.Location,
     "closed_way": m.ClosedWay,
+    "failed_robot": m.FailedRobot,
     "intervention": Intervention,
 }
 MODELS = PARTS | {

@@ -125,6 +125,13 @@ class StopFailed:
 
 
 @dataclass(frozen=True, slots=True)
+class LetGo:
+    """What a robot has set out for, and does not have aboard, may be done by another one."""
+
+    robot: str
+
+
+@dataclass(frozen=True, slots=True)
 class ItemLost:
     """An item that was on its way is gone."""
 
@@ -160,6 +167,7 @@ Event = (
     | StopBegun
     | StopMade
     | StopFailed
+    | LetGo
     | ItemLost
     | Stranded
     | Fetched

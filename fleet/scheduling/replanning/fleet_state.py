@@ -70,8 +70,9 @@ class FleetState:
         """The same by itself, without what was done: what happens to one leaves the other."""
         return replace(
             self,
+            ways=None if self.ways is None else self.ways.copy(),
             robots=[replace(robot) for robot in self.robots],
-            items=[replace(item) for item in self.items],
+            items=[item.copy() for item in self.items],
             routes=list(self.routes),
             log=[],
             moved_by={number: set(items) for number, items in self.moved_by.items()},
@@ -111,7 +112,7 @@ class FleetState:
 
     def record(self, number: int, task: Task, begin_s: float, done_s: float) -> None:
         """A robot has made a stop. Raises `ItemStateError` where it cannot have."""
-        robot, item = self.robots[number], self.items[task.item]
+        item = self.items[task.item]
         match task.action:
             case Action.PICK | Action.TAKE:
                 item.load(number, done_s)
@@ -120,6 +121,11 @@ class FleetState:
             case Action.DROP:
                 back = item.returns and task.place == item.item.delivery.place
                 item.close(ItemState.CANCELLED if back else ItemState.DELIVERED)
+        self.note_made(number, task, begin_s, done_s)
+
+    def note_made(self, number: int, task: Task, begin_s: float, done_s: float) -> None:
+        """A robot stands where it has made a stop, of which the item knows."""
+        robot, item = self.robots[number], self.items[task.item]
         place = self.building.places[task.place]
         self.log.append(Done(robot.robot.name, task.action, item.item.name, place, begin_s))
         if robot.left_s is None:

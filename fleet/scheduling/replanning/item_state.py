@@ -1,6 +1,6 @@
 """Where an item of a fleet at work is, and which states may follow one another."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from math import inf
 
@@ -53,6 +53,8 @@ class TrackedItem:
     is left; `loaded_s` is the end of its pickup. `returns`: it was cancelled on its way and goes
     back; `overdue`: it goes on although its times cannot be kept; `put_off`: why it is in no plan;
     `withdrawn`: it was cancelled while a robot is about to pick it up, and ends with that stop.
+    `held_by`: where it lies is the basket of that robot, which works no more. `taken_from`: the
+    robots that may still think that they have it, as it was taken out of their baskets for others.
     """
 
     item: Item
@@ -65,6 +67,8 @@ class TrackedItem:
     overdue: bool = False
     put_off: str | None = None
     withdrawn: bool = False
+    held_by: int | None = None
+    taken_from: set[int] = field(default_factory=set)
 
     @property
     def under_way(self) -> bool:
@@ -76,21 +80,52 @@ class TrackedItem:
         """Whether anything remains to be done with it."""
         return self.under_way or (self.state is ItemState.WAITING and not self.withdrawn)
 
+    def copy(self) -> "TrackedItem":
+        """The same by itself."""
+        return replace(self, taken_from=set(self.taken_from))
+
     def load(self, robot: int, done_s: float) -> None:
         """A robot has it from now on. Raises `ItemStateError`."""
         if self.state is ItemState.WAITING:
             self.loaded_s = done_s
         self._become(ItemState.ABOARD)
+        self._leave_basket()
         self.robot, self.place = robot, None
+        self.taken_from.discard(robot)
 
     def leave(self, place: int, ready_s: float) -> None:
         """It lies somewhere for another robot. Raises `ItemStateError`."""
         self._become(ItemState.LEFT)
         self.robot, self.place, self.ready_s = None, place, ready_s
 
+    def stand_with(self, place: int, since_s: float) -> None:
+        """Its robot works no more, and stands there with it. Raises `ItemStateError`.
+
+        Who is escorted is in no basket: whoever leads them on meets them first.
+        """
+        held_by = None if self.item.direct else self.robot
+        self.leave(place, since_s)
+        self.held_by = held_by
+
+    def go_on_with(self) -> None:
+        """The robot that it stands with works again, and has it. Raises `ItemStateError`."""
+        robot, self.held_by = self.held_by, None
+        if self.state is not ItemState.STRANDED:
+            self._become(ItemState.ABOARD)
+        self.robot, self.place = robot, None
+
+    def change_baskets(self, robot: int) -> None:
+        """People took it out of one robot's basket and put it into that of another."""
+        assert self.state is ItemState.ABOARD, "it is in a basket"
+        assert self.robot is not None, "it is in a basket"
+        self.taken_from.add(self.robot)
+        self.robot = robot
+        self.taken_from.discard(robot)
+
     def close(self, state: ItemState) -> None:
         """Nothing remains to be done. Raises `ItemStateError`."""
         self._become(state)
+        self._leave_basket()
         self.robot = self.place = self.put_off = None
 
     def strand(self) -> None:
@@ -135,6 +170,12 @@ class TrackedItem:
         assert self.place is not None, "what is left lies somewhere"
         pickup = Visit(self.place, Window(self.ready_s), service_s=handling_s)
         return replace(item, pickup=pickup, delivery=delivery, max_on_board_s=inf)
+
+    def _leave_basket(self) -> None:
+        """It stands with no robot that works no more."""
+        if self.held_by is not None:
+            self.taken_from.add(self.held_by)
+            self.held_by = None
 
     def _become(self, state: ItemState) -> None:
         if state not in _NEXT.get(self.state, ()):

@@ -47,14 +47,18 @@ def make(state: FleetState, number: int, closes: bool) -> list[int]:
     item, kept = state.items[task.item], _is_kept(state, number)
     if not task.action.loads and item.robot != number:
         raise EventError(f"robot '{robot.robot.name}' does not have '{item.item.name}' on board")
-    if task.action.loads and not is_there(state, number):
+    if task.action.loads and not may_have_loaded(state, number):
         place = state.building.places[task.place]
         raise EventError(
             f"item '{item.item.name}' was not left at {place}: nobody can take it there"
         )
     begin_s = state.now_s if robot.begun_s is None else robot.begun_s
     try:
-        state.record(number, task, begin_s, state.now_s)
+        if _is_in_another_basket(state, number):
+            item.change_baskets(number)
+            state.note_made(number, task, begin_s, state.now_s)
+        else:
+            state.record(number, task, begin_s, state.now_s)
     except ItemStateError as error:
         raise EventError(str(error)) from error
     if kept and not closes:
@@ -89,6 +93,19 @@ def is_there(state: FleetState, number: int) -> bool:
     return True
 
 
+def may_have_loaded(state: FleetState, number: int) -> bool:
+    """Whether a robot may have got what it has set out to load: `is_there`, or people took it out
+    of the basket of a robot that has worked again since."""
+    return is_there(state, number) or _is_in_another_basket(state, number)
+
+
+def _is_in_another_basket(state: FleetState, number: int) -> bool:
+    """What is taken at a place to change robots is not there before it was given."""
+    task = _doing(state.robots[number])
+    item = state.items[task.item]
+    return task.action is Action.PICK and item.state is ItemState.ABOARD and item.robot != number
+
+
 def fail(state: FleetState, number: int, at: int, again_s: float | None) -> list[int]:
     """It has not done what it set out for, and is elsewhere now. Raises `EventError`."""
     robot = state.robots[number]
@@ -115,6 +132,17 @@ def fail(state: FleetState, number: int, at: int, again_s: float | None) -> list
     else:
         item.send_back()
     item.put_off = None
+    return [task.item]
+
+
+def let_go(state: FleetState, number: int) -> list[int]:
+    """Others may do what it has set out for. Raises `EventError` where they cannot."""
+    robot = state.robots[number]
+    task = _doing(robot)
+    if not _is_kept(state, number) or state.items[task.item].robot is not None:
+        name, item = robot.robot.name, state.items[task.item].item.name
+        raise EventError(f"nobody else can do what robot '{name}' is about with '{item}'")
+    state.take_out(task.item)
     return [task.item]
 
 

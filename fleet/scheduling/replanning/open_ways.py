@@ -1,6 +1,7 @@
 """The ways of a building while some of them are blocked and doors are closed for a while."""
 
 from collections.abc import Iterable, Mapping
+from copy import copy
 from dataclasses import replace
 from math import inf
 
@@ -19,6 +20,12 @@ class OpenWays:
         self._speed_m_s, self._starts_s = speed_m_s, starts_s
         self._closed_until_s: dict[frozenset[str], float] = {}
         self._graph = graph
+
+    def copy(self) -> "OpenWays":
+        """The same ways by themselves: what is closed there stays open here."""
+        ways = copy(self)
+        ways._closed_until_s = dict(self._closed_until_s)
+        return ways
 
     def travel(self) -> Travel:
         """Travel between all places as the ways are now."""

@@ -14,7 +14,7 @@ from math import inf
 from mend.fleet.scheduling.checker import require_valid
 from mend.fleet.scheduling.partial_routes import items_in
 from mend.fleet.scheduling.problem import Item, Problem, ProblemError
-from mend.fleet.scheduling.replanning import observed_stops
+from mend.fleet.scheduling.replanning import observed_stops, robot_failures
 from mend.fleet.scheduling.replanning.events import (
     Cancelled,
     DoorClosed,
@@ -22,6 +22,7 @@ from mend.fleet.scheduling.replanning.events import (
     EventError,
     Fetched,
     ItemLost,
+    LetGo,
     NewItem,
     RobotBack,
     RobotDelayed,
@@ -39,7 +40,7 @@ from mend.fleet.scheduling.replanning.events import (
 from mend.fleet.scheduling.replanning.fleet_state import Done, FleetState
 from mend.fleet.scheduling.replanning.item_state import ItemState, ItemStateError, TrackedItem
 from mend.fleet.scheduling.replanning.live_plan import LivePlan, NextStop
-from mend.fleet.scheduling.replanning.on_the_way import stand_still, turn_before
+from mend.fleet.scheduling.replanning.on_the_way import turn_before
 from mend.fleet.scheduling.replanning.open_ways import OpenWays
 from mend.fleet.scheduling.replanning.plan_repair import PlanRepair
 from mend.fleet.scheduling.replanning.residual_problem import ResidualProblem
@@ -171,12 +172,52 @@ class RunningFleet:
         arrival_s = state.travel.trip(robot.place, place, later_s, speed).arrival_s
         return max(from_s, later_s) if arrival_s <= stop.begin_s + CHECK_S else from_s
 
+    def passes(self, name: str) -> list[str]:
+        """The places that a robot passes from stop to stop, once it is where it is on its way to.
+
+        Only its stops where the ways between them are not known.
+        """
+        state, robot = self._state, self.robots[name]
+        at, leaves_s, speed = robot.place, robot.available_s(state.now_s), robot.robot.speed
+        passed = [at]
+        for stop in self.stops()[name]:
+            trip = (at, state.place_number(stop.place))
+            arrival_s = state.travel.trip(*trip, leaves_s, speed).arrival_s
+            ways = state.ways
+            path = () if ways is None else ways.path(trip, arrival_s, leaves_s, speed)
+            passed += [place for place, _ in path] or [trip[1]]
+            at, leaves_s = trip[1], stop.done_s
+        return [state.building.places[place] for place in passed]
+
     def is_there(self, name: str) -> bool:
         """Whether what a robot has set out to load is there for it, as far as is known.
 
         Raises `EventError` where it has not set out for anything.
         """
         return observed_stops.is_there(self._state, self._state.robot_number(name))
+
+    def may_have_loaded(self, name: str) -> bool:
+        """Whether a robot may have got what it has set out to load: `is_there`, or it was in the
+        basket of a robot that has worked again since.
+
+        Raises `EventError` where it has not set out for anything.
+        """
+        return observed_stops.may_have_loaded(self._state, self._state.robot_number(name))
+
+    def taken_out(self) -> dict[str, frozenset[str]]:
+        """By robot, what was taken out of its basket for others, which it may not know yet.
+
+        What it is about to load it is not told of: it may have it again at any moment.
+        """
+        robots = enumerate(self._state.robots)
+        return {
+            robot.robot.name: frozenset(
+                item.item.name
+                for n, item in enumerate(self._state.items)
+                if number in item.taken_from and (robot.doing is None or robot.doing.item != n)
+            )
+            for number, robot in robots
+        }
 
     def closed_until_s(self) -> Mapping[frozenset[str], float]:
         """The ways that are blocked or closed for now, and until when they count as that."""
@@ -225,9 +266,9 @@ class RunningFleet:
             case RobotDelayed():
                 return self._delay(self._state.robot_number(event.robot), event.by_s)
             case RobotFailed():
-                return self._fail(event)
+                return self._replan(robot_failures.fail(self._state, event))
             case RobotBack():
-                return self._come_back(self._state.robot_number(event.robot), event.place)
+                return self._come_back(event)
             case RobotMoved():
                 return self._move(self._state.robot_number(event.robot), event.place)
             case WayBlocked():
@@ -240,7 +281,7 @@ class RunningFleet:
                 return self._open(event.between)
             case TimePassed():
                 return self._replan(self._state.retry())
-            case SetOut() | StopBegun() | StopMade() | StopFailed():
+            case SetOut() | StopBegun() | StopMade() | StopFailed() | LetGo():
                 return self._observe(event)
             case ItemLost():
                 return self._end(event.item, ItemState.LOST)
@@ -249,7 +290,7 @@ class RunningFleet:
             case Fetched():
                 return self._end(event.item, ItemState.CANCELLED)
 
-    def _observe(self, event: SetOut | StopBegun | StopMade | StopFailed) -> Outcome:
+    def _observe(self, event: SetOut | StopBegun | StopMade | StopFailed | LetGo) -> Outcome:
         if not self._observed:
             raise EventError("these robots are not observed: they do what is planned")
         state, number = self._state, self._state.robot_number(event.robot)
@@ -264,6 +305,8 @@ class RunningFleet:
             case StopFailed():
                 place = state.place_number(event.at)
                 selling = observed_stops.fail(state, number, place, event.again_s)
+            case LetGo():
+                selling = observed_stops.let_go(state, number)
         return self._replan(selling)
 
     def _set_out(self, number: int) -> Outcome:
@@ -347,52 +390,11 @@ class RunningFleet:
             if item.robot == number and item.loaded_s == before_s:
                 item.loaded_s = now_free_s
 
-    def _fail(self, event: RobotFailed) -> Outcome:
-        state, name, lost = self._state, event.robot, event.lost
-        number = state.robot_number(name)
-        robot = state.robots[number]
-        if not robot.works:
-            raise EventError(f"robot '{name}' has failed already")
-        place = None if event.at is None else state.place_number(event.at)
-        aboard = {
-            n: item
-            for n, item in enumerate(state.items)
-            if item.robot == number and item.state is ItemState.ABOARD
-        }
-        unknown = lost - {item.item.name for item in aboard.values()}
-        if unknown:
-            raise EventError(f"robot '{name}' does not have {', '.join(sorted(unknown))} on board")
-        doing = robot.doing
-        if place is None:
-            stand_still(robot, state.ways, state.now_s)
-        robot.stand_at(robot.place if place is None else place, state.now_s)
-        robot.works = False
-        if doing is not None and state.items[doing.item].withdrawn:
-            state.items[doing.item].withdrawn = False
-            state.items[doing.item].close(ItemState.CANCELLED)
-        moved = {task.item for task in state.routes[number]} | set(aboard)
-        for n, item in aboard.items():
-            item.put_off = None
-            if item.item.name in lost:
-                moved.remove(n)
-                state.take_out(n)
-                item.close(ItemState.LOST)
-            else:
-                item.leave(robot.place, state.now_s)
-        for n in moved:
-            state.take_out(n, keep_pickups=True)
-        state.moved_by[number] = moved
-        return self._replan(sorted(moved))
-
-    def _come_back(self, number: int, place: str) -> Outcome:
-        state, robot = self._state, self._state.robots[number]
-        if robot.works:
-            raise EventError(f"robot '{robot.robot.name}' works already")
-        if place not in state.building.places:
-            raise EventError(f"there is no place '{place}'")
-        robot.works, robot.place = True, state.building.places.index(place)
-        robot.free_s = max(state.now_s, robot.robot.shift.earliest_s)
-        return self._replan(state.retry(), again=state.moved_by.pop(number, ()))
+    def _come_back(self, event: RobotBack) -> Outcome:
+        state = self._state
+        selling = dict.fromkeys([*robot_failures.come_back(state, event), *state.retry()])
+        again = state.moved_by.pop(state.robot_number(event.robot), ())
+        return self._replan([*selling], again=again)
 
     def _move(self, number: int, place: str) -> Outcome:
         state, robot = self._state, self._state.robots[number]

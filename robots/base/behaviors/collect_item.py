@@ -23,11 +23,17 @@ class ItemParameters(StrictModel):
     item: Name
 
 
+class CollectParameters(ItemParameters):
+    """`held_by`: the robot in whose basket it is, where nobody at the place has it."""
+
+    held_by: Name | None = None
+
+
 class CollectItem(BaseBehavior):
     """Goes to a place as `go_to` does, and waits there until its basket is heavier."""
 
     name: ClassVar[str] = "collect_item"
-    parameters: ClassVar[type[StrictModel]] = ItemParameters
+    parameters: ClassVar[type[StrictModel]] = CollectParameters
 
     def steps(self, parameters: StrictModel, situation: BaseSituation) -> Sequence[BaseStep]:
         assert isinstance(parameters, ItemParameters), "commands are checked before"

@@ -1,4 +1,4 @@
-"""Taking another way where one is barred, before people are asked."""
+"""Taking another way where one is barred, or letting another robot go, before people are asked."""
 
 from collections.abc import Callable
 
@@ -21,24 +21,42 @@ class GoingRound:
         self._base, self._progress, self._report = base, progress, report
         self.times = 0
         """How often another way was taken."""
+        self._told: dict[tuple[str, str], float] = {}
+        """Since when others know of what bars the way for which people are to be asked."""
 
     def copes_with(self, issue: str, detection: Detection) -> bool:
-        """Whether another way is taken, so that nobody need be asked about an issue."""
+        """Whether another way is taken, or another robot may still go instead, so that nobody need
+        be asked about an issue yet."""
         drive = self._progress.taken
         if len(detection.between) != 2 or not isinstance(drive, Drive):
             return False
         origin, beyond = detection.between
         self._base.bar((origin, beyond))
+        if not self._goes_round(drive):
+            return self._others_may_go(issue, (origin, beyond))
+        self.times += 1
+        self._progress.blocked_since_s, self._progress.stalled_s = None, 0.0
+        self._report(WayFound(finding=issue, between=[origin, beyond]))
+        return True
+
+    def _goes_round(self, drive: Drive) -> bool:
         try:
             if self._base.round_takes_s(drive.to) > ASKS_BEYOND_S:
                 return False
             self._base.start(drive.to, drive.speed)
         except CommandError:
             return False
-        self.times += 1
-        self._progress.blocked_since_s, self._progress.stalled_s = None, 0.0
-        self._report(WayFound(finding=issue, between=[origin, beyond]))
         return True
+
+    def _others_may_go(self, issue: str, between: tuple[str, str]) -> bool:
+        """Whether others have not known for long enough yet that its way is barred here."""
+        if self._base.asks_after_s <= 0.0:
+            return False
+        now_s = self._base.body.time_s()
+        if between not in self._told:
+            self._told[between] = now_s
+            self._report(WayFound(finding=issue, between=[*between]))
+        return now_s < self._told[between] + self._base.asks_after_s
 
     def patience_s(self) -> float:
         """How much longer a way round may take now: as long as it has stood, at least."""

@@ -69,6 +69,7 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
                 in_the_way_m=None if barrier is None else barrier.away_m,
                 door=None if barrier is None else barrier.door,
                 between=None if barrier is None else barrier.between,
+                robot=None if barrier is None else barrier.robot,
                 waited_s=0.0 if since_s is None else now - since_s,
                 stalled_s=progress.stalled_s,
                 no_way=None if whereabouts.is_lost else progress.no_way,

@@ -43,9 +43,12 @@ class WayBlocked(BaseMonitor[Patience]):
         told_otherwise = view.in_the_way_m is None or view.door is not None
         if told_otherwise or view.waited_s < self.settings.patience_s:
             return None
-        standing = f"something has stood {view.in_the_way_m:.1f} m in front of me"
+        what = "something" if view.robot is None else f"{view.robot} has failed, and"
+        away, stood = f"{view.in_the_way_m:.1f} m", f"{view.waited_s:.0f} s"
+        told = f"{what} has stood {away} in front of me for {stood}"
         return Detection(
             camera=LASER,
-            explanation=f"{standing} for {view.waited_s:.0f} s",
+            explanation=told if view.robot is None else f"{told}; it may be pushed aside",
             between=list(view.between or ()),
+            robot=view.robot,
         )

@@ -74,7 +74,7 @@ class BaseView(MonitorView):
     F1-101`). `standing`: what it waits for people to do. `lacks`: what it is to hand over and was
     not given; `missing_kg`: how much less there is in its basket than it was given. `between`: the
     neighbouring places between which is what leaves it no way on. `left`: it waits for whom it
-    leads.
+    leads. `robot`: the one that has failed and leaves it no way on, if it is one.
     """
 
     pose: BasePose
@@ -94,6 +94,7 @@ class BaseView(MonitorView):
     power: Power = Power()
     between: tuple[str, str] | None = None
     left: Left | None = None
+    robot: str | None = None
 
 
 class BaseMonitor(Monitor[P, BaseView]):

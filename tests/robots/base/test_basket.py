@@ -86,3 +86,26 @@ def test_it_remembers_what_it_has_and_where_it_handed_things_over() -> None:
     assert memory.handed_over == {"mail": "F1-101"}
     memory.note_given("mail", 0.8)
     assert memory.handed_over == {}
+
+
+def test_what_was_taken_out_for_another_robot_is_not_missed() -> None:
+    scales, load = sense()
+    for item, weighs_kg in (("mail", 0.5), ("keys", 0.2)):
+        scales.shows_kg += weighs_kg
+        scales.memory.note_given(item, scales.load_kg())
+    scales.memory.offered = ("mail", "office")
+    scales.shows_kg -= 0.5
+    assert load.as_remembered() == "lighter"
+    scales.memory.forget("mail")
+    scales.memory.forget("nothing of the kind")
+    assert load.as_remembered() is None
+    assert scales.memory.offered is None
+    assert [*scales.memory.items] == ["keys"]
+    scales.shows_kg -= 0.2
+    assert load.as_remembered() == "lighter"
+
+
+def test_what_is_forgotten_before_the_first_look_at_the_load_cell_is_forgotten() -> None:
+    memory = BasketMemory()
+    memory.forget("mail")
+    assert memory == BasketMemory()

@@ -44,6 +44,13 @@ def leg(number: int = 1, action: LegAction = LegAction.COLLECT) -> Leg:
     )
 
 
+def test_who_fetches_something_out_of_a_basket_says_whose_it_is() -> None:
+    rescue = leg(action=LegAction.TAKE).model_copy(update={"held_by": "robot2"})
+    assert task_of(rescue, "101").nodes[0].parameters["held_by"] == "robot2"  # type: ignore[union-attr]
+    lies = task_of(leg(action=LegAction.TAKE), "101")
+    assert "held_by" not in lies.nodes[0].parameters  # type: ignore[union-attr]
+
+
 @pytest.mark.parametrize(
     ("what", "booking", "called"),
     [

@@ -1,7 +1,7 @@
 """A fleet hands its legs out as runs, once each, and follows what becomes of them."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Collection, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -59,12 +59,23 @@ class FakeSite:
         self.odometers: dict[str, Odometer] = {}
         self.kept_off: set[frozenset[str]] = set()
         self.stands_still = False
+        self.asks_after_s = 0.0
+        self.failed: list[str] = []
+        self.taken: Mapping[str, list[str]] = {}
 
     def odometer(self, robot: str) -> Odometer | None:
         return self.odometers.get(robot)
 
-    def keep_off(self, closed: Mapping[frozenset[str], float]) -> None:
-        self.kept_off = set(closed)
+    def keep_off(
+        self, closed: Mapping[frozenset[str], float], failed: Collection[str] = ()
+    ) -> None:
+        self.kept_off, self.failed = set(closed), [*failed]
+
+    def hear_of_ways(self, asks_after_s: float) -> None:
+        self.asks_after_s = asks_after_s
+
+    def note_taken(self, taken: Mapping[str, list[str]]) -> None:
+        self.taken = taken
 
     def rests(self, robot: str) -> bool:
         return robot not in self.busy | self.gone
@@ -399,6 +410,57 @@ async def test_a_robot_that_is_taken_out_breaks_off_and_another_takes_over() -> 
             await work.fleet.take_out("r0", "its wheel squeaks", None)
         with pytest.raises(NotFoundError, match="this fleet has no robot 'r7'; it has r0, r1"):
             await work.fleet.take_out("r7", "its wheel squeaks", None)
+
+
+async def _with_tea_aboard_r0_fails(work: Work) -> FakeRun:
+    """It is taken out with what it is to hand over; the run in which another one fetches that."""
+    await work.fleet.submit(asked(), None)
+    (await work.runs.nth(1)).ended.set_result(("finished", True))
+    assert (await work.runs.nth(2)).behavior == "hand_over_item"
+    work.site.standing["r0"] = (20.0, 0.0, 0.0)
+    await work.fleet.take_out("r0", "its wheel squeaks", None)
+    fetching = await work.runs.nth(3)
+    assert (fetching.robot, fetching.behavior) == ("r1", "collect_item")
+    return fetching
+
+
+async def test_who_fetches_something_says_in_whose_basket_it_is_and_its_robot_is_told() -> None:
+    async with working("a", "e") as work:
+        fetching = await _with_tea_aboard_r0_fails(work)
+        assert fetching.parameters["held_by"] == "r0"
+        assert work.site.failed == ["r0"], "the others know what they meet there"
+        assert work.site.taken == {}
+        fetching.ended.set_result(("finished", True))
+        bringing = await work.runs.nth(4)
+        assert (bringing.robot, bringing.behavior) == ("r1", "hand_over_item")
+        assert work.site.taken == {"r0": ["tea"]}
+
+
+async def test_a_robot_that_is_put_back_brings_what_nobody_has_fetched() -> None:
+    async with working("a", "e") as work:
+        fetching = await _with_tea_aboard_r0_fails(work)
+        await work.fleet.put_back("r0", None)
+        bringing = await work.runs.nth(4)
+        assert (bringing.robot, bringing.behavior) == ("r0", "hand_over_item")
+        assert fetching.ended.result() == ("aborted", False)
+        bringing.ended.set_result(("finished", True))
+        await work.until("tea", RequestStatus.DONE)
+        assert len(work.runs.runs) == 4
+
+
+async def test_what_was_fetched_just_as_its_robot_was_put_back_is_brought_by_who_has_it() -> None:
+    async with working("a", "e") as work:
+        fetching = await _with_tea_aboard_r0_fails(work)
+        work.runs.abort = _too_late  # type: ignore[method-assign]
+        await work.fleet.put_back("r0", None)
+        fetching.ended.set_result(("finished", True))
+        bringing = await work.runs.nth(4)
+        assert (bringing.robot, bringing.behavior) == ("r1", "hand_over_item")
+        assert work.site.taken == {"r0": ["tea"]}
+
+
+async def _too_late(*_: object) -> Any:
+    raise ConflictError("it has ended")
 
 
 async def test_a_robot_that_is_out_of_service_works_only_once_it_is_put_back() -> None:

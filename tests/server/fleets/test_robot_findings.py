@@ -17,7 +17,7 @@ from mend.maps.building.building import Building, BuildingDocument, Floor, Floor
 from mend.maps.navigation import NavigationGraph, Place, Way
 from mend.robots.link.messages import LASER, Detection
 from mend.server.access.deeds import deed_of
-from mend.server.fleets.fleet_at_work import FleetAtWork
+from mend.server.fleets.fleet_at_work import OTHERS_S, FleetAtWork
 from mend.server.fleets.fleet_record import FleetRecord
 from mend.server.fleets.fleets import KIND
 from mend.server.fleets.place_names import PlaceNames
@@ -34,18 +34,23 @@ RING = (*ROW, "ea")
 
 
 class Work:
-    """A fleet of one robot at `a`, in rooms with such lanes between them."""
+    """A fleet, unless said otherwise of one robot at `a`, in rooms with such lanes between them."""
 
-    def __init__(self, lanes: tuple[str, ...], snapshot: DispatcherSnapshot | None = None) -> None:
+    def __init__(
+        self,
+        lanes: tuple[str, ...],
+        snapshot: DispatcherSnapshot | None = None,
+        starts: str = "a",
+    ) -> None:
         places = {name: FloorPlace(x=10.0 * n, y=0.0) for n, name in enumerate("abcde")}
         floor = Floor(places=places, lanes=tuple(Lane(between=(a, b)) for a, b in lanes))
         building = Building(BuildingDocument(building="office", floors={"f": floor}))
         self.site, self.journal = FakeSite(), SqliteJournal(":memory:")
         self.runs = FakeRuns(self.site)
         self.dispatcher = (
-            Dispatcher(building, fleet_of("a"))
+            Dispatcher(building, fleet_of(*starts))
             if snapshot is None
-            else Dispatcher.restored(building, fleet_of("a"), snapshot)
+            else Dispatcher.restored(building, fleet_of(*starts), snapshot)
         )
         names, options = PlaceNames(building, SCENE), FleetOptions()
         self.fleet = FleetAtWork(
@@ -158,6 +163,45 @@ async def test_where_no_other_way_leads_people_help_and_the_plan_stays() -> None
         await work.raised(going, "door_closed", "f/d", "f/e")
         await work.until(lambda all_: bool(all_.closed_until_s()))
         assert BC not in work.dispatcher.closed_until_s()
+
+
+async def test_before_people_are_asked_a_robot_from_the_other_side_goes_instead() -> None:
+    async with Work(ROW, starts="ae") as work:
+        await work.fleet.submit(visit(place="b"), None)
+        going = await work.runs.nth(1)
+        assert (going.robot, work.site.asks_after_s) == ("r0", OTHERS_S)
+        work.site.standing["r0"] = (0.0, 0.0, 0.0)
+        await work.found(going, "blocked", "f/a", "f/b")
+        instead = await work.runs.nth(2)
+        assert (instead.robot, instead.parameters["place"]) == ("r1", "b")
+        assert going.ended.result() == ("aborted", False)
+        await work.raised(going, "blocked", "f/a", "f/b")
+        instead.ended.set_result(("finished", True))
+        await work.until(lambda all_: all_.view("visit").status is RequestStatus.DONE)
+        changes = [e for e in await work.events() if isinstance(e, ev.PlanChanged)]
+        taken = [
+            each for each in changes if each.reason.startswith("r1 takes over 'visit' from r0")
+        ]
+        assert len(taken) == 1
+        told = [each.told for each in await work.events() if isinstance(each, ev.FleetTold)]
+        assert told == ["found of the way between f/a and f/b: blocked"]
+        assert len(work.runs.runs) == 2
+
+
+async def test_others_are_asked_once_and_what_nobody_takes_over_people_are_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    tried: list[Found] = []
+    monkeypatch.setattr(Dispatcher, "take_over", lambda _self, found, _now_s: tried.append(found))
+    async with Work(ROW, starts="ae") as work:
+        await work.fleet.submit(visit(place="b"), None)
+        going = await work.runs.nth(1)
+        await work.found(going, "blocked", "f/a", "f/b")
+        await work.raised(going, "blocked", "f/a", "f/b")
+        # What comes after it has been heard too says that this one was.
+        await work.raised(going, "door_closed", "f/d", "f/e")
+        await work.until(lambda all_: bool(all_.closed_until_s()))
+        assert [each.between for each in tried] == [("f/a", "f/b")]
 
 
 @pytest.mark.parametrize(("one_way", "led"), [(False, True), (True, False)])

@@ -1,10 +1,11 @@
-"""A site tells its robots which ways are closed, those that know of such things."""
+"""A site tells its robots which ways are closed and what was taken out of their baskets, those
+that know of such things."""
 
 from collections.abc import Callable
 from typing import Any
 from uuid import UUID
 
-from mend.robots.link.messages import Avoid, ClosedWay, Hello
+from mend.robots.link.messages import Avoid, ClosedWay, FailedRobot, Hello, NoteTaken
 from mend.server.runtime.clock import WorldTime
 from mend.server.sites.site import Site
 from mend.tasks.frames import Frame
@@ -14,11 +15,11 @@ TOLD = Avoid(ways=[ClosedWay(between=["F1/a", "F1/b"], until=90.0)])
 
 
 class FakeRegistry:
-    """Robots that are connected, and what they are told of ways."""
+    """Robots that are connected, and what they are told of ways and of their baskets."""
 
     def __init__(self) -> None:
         self.hellos: dict[str, Hello] = {}
-        self.told: list[tuple[str, Avoid]] = []
+        self.told: list[tuple[str, Avoid | NoteTaken]] = []
 
     def connected(self, robot: str) -> bool:
         return robot in self.hellos
@@ -26,8 +27,11 @@ class FakeRegistry:
     def hello(self, robot: str) -> Hello | None:
         return self.hellos.get(robot)
 
+    def poses(self, _: str) -> None:
+        """Nobody says where it is."""
+
     def send(self, robot: str, _: str, body: Any, **__: object) -> None:
-        if isinstance(body, Avoid):
+        if isinstance(body, Avoid | NoteTaken):
             self.told.append((robot, body))
 
 
@@ -47,6 +51,7 @@ def hello(robot: str, *, knows: bool = True, boot: str = "1") -> Hello:
         cameras=[],
         time=0.0,
         avoids_ways=knows,
+        notes_taken=knows,
     )
 
 
@@ -82,3 +87,44 @@ async def test_who_comes_later_is_told_then_and_who_comes_again_anew() -> None:
     await come(site, registry, hello("bob"))
     await come(site, registry, hello("ada", boot="2"))
     assert registry.told == [("ada", TOLD), ("bob", TOLD), ("ada", TOLD)]
+
+
+async def test_who_has_a_basket_is_told_once_what_was_taken_out_and_anew_when_it_comes() -> None:
+    site, registry = await site_of(hello("ada"), hello("bob", knows=False))
+    site.note_taken({"ada": ["mail"], "bob": ["keys"]})
+    site.note_taken({"ada": ["mail"], "bob": ["keys"]})
+    mail = NoteTaken(items=["mail"])
+    assert registry.told == [("ada", mail)]
+    await come(site, registry, hello("ada", boot="2"))
+    assert registry.told[1:] == [("ada", mail)]
+    site.note_taken({"ada": ["mail", "tea"]})
+    assert registry.told[2:] == [("ada", NoteTaken(items=["mail", "tea"]))]
+    site.note_taken({})
+    await come(site, registry, hello("ada", boot="3"))
+    assert len(registry.told) == 3
+
+
+async def test_who_is_heard_of_ways_is_told_to_wait_before_it_asks() -> None:
+    site, registry = await site_of(hello("ada"))
+    site.hear_of_ways(3.0)
+    await come(site, registry, hello("bob"))
+    assert registry.told == [(name, Avoid(asks_after_s=3.0)) for name in ("ada", "bob")]
+    site.keep_off({LANE: 90.0})
+    assert registry.told[2:] == [
+        (name, TOLD.model_copy(update={"asks_after_s": 3.0})) for name in ("ada", "bob")
+    ]
+
+
+async def test_where_robots_stand_that_have_failed_the_others_are_told_in_their_own_frames() -> (
+    None
+):
+    site, registry = await site_of(hello("ada"), hello("bob"))
+    site._seen_at["bob"] = (4.04, 2.0, 3.5)
+    site.keep_off({}, ["bob"])
+    stands = FailedRobot(robot="bob", x=4.0, y=2.0, z=3.5)
+    assert registry.told == [("ada", Avoid(failed=[stands])), ("bob", Avoid())]
+    site.keep_off({}, ["bob"])
+    await come(site, registry, hello("ada", boot="2"))
+    assert registry.told[2:] == [("ada", Avoid(failed=[stands]))]
+    site.keep_off({})
+    assert registry.told[3:] == [("ada", Avoid()), ("bob", Avoid())]

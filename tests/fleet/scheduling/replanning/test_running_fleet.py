@@ -178,7 +178,7 @@ def test_without_robots_items_wait_until_one_is_back() -> None:
     assert fleet.plan() is None
     assert fleet.apply(NewItem(parcel("more")), 4.0).refused == {"more": "no robot works"}
     fleet.apply(RobotBack("left", "c"), 10.0)
-    assert stops(fleet, "left") == ["pick aboard at a", "drop aboard at e"]
+    assert stops(fleet, "left") == ["drop aboard at e"]
 
 
 def test_robot_too_late_for_its_shift_says_so_and_gets_home() -> None:

@@ -14,6 +14,7 @@ from mend.robots.link.messages import (
     ClosedWay,
     Finished,
     Holding,
+    Interrupt,
     IssueDetected,
     Location,
     Look,
@@ -172,3 +173,40 @@ def test_another_way_that_opens_while_it_stands_is_taken() -> None:
     bench.run()
     looked = bench.of(Looked)[-1]
     assert (looked.fulfilled, looked.led_round) == (True, True)
+
+
+def test_before_it_asks_others_have_time_to_go_instead() -> None:
+    bench = yard(ring=False)
+    bench.send(Avoid(asks_after_s=4.0))
+    bar(bench)
+    go(bench)
+    found = bench.run_until(WayFound)
+    assert found == WayFound(finding="blocked", between=BETWEEN)
+    since_s = bench.robot.time_s()
+    bench.run_until(IssueDetected)
+    assert 4.0 <= bench.robot.time_s() - since_s < 5.0
+    assert len(bench.of(WayFound)) == 1
+
+
+def test_who_is_told_to_stop_meanwhile_asks_nobody() -> None:
+    bench = yard(ring=False)
+    bench.send(Avoid(asks_after_s=4.0))
+    bar(bench)
+    go(bench)
+    bench.run_until(WayFound)
+    bench.send(Interrupt(retreat=True))
+    bench.run()
+    assert not bench.of(IssueDetected)
+
+
+def test_others_are_told_of_it_once_however_often_it_asks() -> None:
+    bench = yard(ring=False)
+    bench.send(Avoid(asks_after_s=4.0))
+    bar(bench)
+    go(bench)
+    for asked in (1, 2):
+        bench.run_until(IssueDetected)
+        bench.run()
+        bench.send(Resume(execution="e1"))
+        assert len(bench.of(IssueDetected)) == asked
+    assert len(bench.of(WayFound)) == 1
