@@ -32,6 +32,7 @@ BESIDE_M = 2.3
 WITH_PERSON_M = 3.0
 SPARE_S = 1.0
 MOMENT_S = 0.1
+BEGINS_S = 60.0
 BRINGS = (LegAction.HAND_OVER, LegAction.GIVE, LegAction.BRING_BACK)
 FETCHES = (LegAction.COLLECT, LegAction.TAKE)
 
@@ -139,6 +140,7 @@ class OrdealLedger:
             *self._journal.faults_of_events(self._witness),
             *self._truth.faults,
             *self._touches(),
+            *self._runs(),
             *self._requests(),
             *self._legs(),
             *self._loads(),
@@ -171,6 +173,21 @@ class OrdealLedger:
                 yield f"{line.t:.1f} s: touched: {line.body['who']} by {line.body['by_m']:.3f} m"
             elif line.what == "drove against something":
                 yield f"{line.t:.1f} s: a robot drove against something"
+
+    # --- Runs -----------------------------------------------------------------------------------
+
+    def _runs(self) -> Iterator[str]:
+        """A run's clock begins at 0, and no robot refuses what it is told."""
+        begun: set[str] = set()
+        for row in self._rows:
+            if row.kind == "run_started":
+                begun.add(row.run)
+            elif row.run in begun and row.time > BEGINS_S and row.kind == "robot_holding":
+                yield f"the clock of run {row.run} begins at {row.time:.1f} s"
+            if row.kind == "node_started":
+                begun.discard(row.run)
+            if row.kind == "node_reset" and "the robot refused" in row.body["reason"]:
+                yield f"event {row.seq}: {row.body['robot']}: {row.body['reason']}"
 
     # --- Requests -------------------------------------------------------------------------------
 
