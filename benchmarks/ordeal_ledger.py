@@ -50,7 +50,8 @@ class Truth:
     """What really was; `lines`: all that was ever so, `kept`: without what kills undid."""
 
     def __init__(self, file: Path) -> None:
-        read = [json.loads(each) for each in file.read_text().splitlines()]
+        written = file.read_text() if file.exists() else ""
+        read = [json.loads(each) for each in written.splitlines()]
         self.lines = [Line(each["t"], each["what"], each) for each in read]
         self.kept: list[Line] = []
         self.faults: list[str] = []

@@ -43,7 +43,9 @@ GAP_S = 6.0
 LOOKS_EVERY_S = 0.2
 BOUND_S = 2 * 3600.0
 """By the site's clock everything is over so long after the last thing that happens."""
-STANDS_STILL_S = 120.0
+PATIENCE_S = 120.0
+"""With one answer of the service."""
+STANDS_STILL_S = 180.0
 """A site's clock that stands for so long, while something is open, hangs (wall time)."""
 KILLED_AGAIN = 0.2
 SETTINGS = {
@@ -155,7 +157,7 @@ class BuildingOrdeal:
         await self._service.start()
         following = asyncio.create_task(self._people.follow())
         try:
-            async with MendClient(self._service.url) as client:
+            async with MendClient(self._service.url, timeout_s=PATIENCE_S) as client:
                 site = await self._open(client)
                 happenings = SiteHappenings(
                     client, site.id, self.building, self._drawn.seed, 2 * self._drawn.robots + 2
@@ -305,6 +307,8 @@ class BuildingOrdeal:
             self._plans[json.loads(text)["dispatcher"]["change_count"]] = text
 
     def _is_there(self, robot: str, said: str) -> bool:
+        if not self._truth.exists():
+            return False
         with self._truth.open("rb") as file:
             file.seek(max(0, file.seek(0, os.SEEK_END) - 20_000))
             lines = file.read().decode(errors="replace").splitlines()
