@@ -119,7 +119,10 @@ class Outcome:
 
 
 class BuildingOrdeal:
-    """`minutes`: so long things happen there, by the site's clock; `kills`: how many meanwhile."""
+    """`minutes`: so long things happen there, by the site's clock; `kills`: how many meanwhile.
+
+    `truth`: what its worlds wrote.
+    """
 
     def __init__(
         self,
@@ -137,17 +140,18 @@ class BuildingOrdeal:
         rooms = self.building.of_kind(PlaceKind.ROOM)
         self._transfers = tuple(self._chance.sample(rooms, min(4, len(rooms))))
         self.scene = scene_of(self.building, "ordeal", drawn.robots)
-        self._truth = folder / "truth.jsonl"
+        self.truth = folder / "truth.jsonl"
         ordeal_world.install(folder / "worlds")
         paths = [str(folder / "worlds"), *(each for each in sys.path if each)]
         self._service = ServiceProcess(
             folder, PYTHONPATH=os.pathsep.join(paths), **SETTINGS,
-            **{ordeal_world.TRUTH: str(self._truth)},
+            **{ordeal_world.TRUTH: str(self.truth)},
         )  # fmt: skip
         self._witness = Witness()
         self._people = People(self._service.url, self._witness, drawn.seed, self._is_there)
         self._plans: dict[int, str] = {}
         self._robots: list[str] = []
+        self._asked: dict[str, str] = {}
         self._outcome = Outcome(drawn)
         self._moved_at, self._last_s = time.monotonic(), -1.0
 
@@ -261,7 +265,7 @@ class BuildingOrdeal:
         """Nothing more happens, and everybody is willing: all comes to its end."""
         began_s = fleet.now_s
         self._people.calm = True
-        self._truth.with_name(self._truth.name + ordeal_world.CALM).touch()
+        self.truth.with_name(self.truth.name + ordeal_world.CALM).touch()
         self._tell(f"{fleet.now_s:8.1f} s  nothing more is to happen")
         while await self._goes_on(client, site):
             with suppress(RefusedError, NothingToDoError):
@@ -307,9 +311,9 @@ class BuildingOrdeal:
             self._plans[json.loads(text)["dispatcher"]["change_count"]] = text
 
     def _is_there(self, robot: str, said: str) -> bool:
-        if not self._truth.exists():
+        if not self.truth.exists():
             return False
-        with self._truth.open("rb") as file:
+        with self.truth.open("rb") as file:
             file.seek(max(0, file.seek(0, os.SEEK_END) - 20_000))
             lines = file.read().decode(errors="replace").splitlines()
         states = [each for each in lines[1:] if '"what": "state"' in each and each[-1:] == "}"]
@@ -321,8 +325,9 @@ class BuildingOrdeal:
     # --- What is found --------------------------------------------------------------------------
 
     def _judge(self, happenings: SiteHappenings | None) -> None:
-        outcome, asked = self._outcome, {} if happenings is None else happenings.asked
+        outcome = self._outcome
         if happenings is not None:
+            self._asked = happenings.asked
             outcome.counts += Counter(
                 {f"happened: {what}": n for what, n in happenings.counts.items()}
             )
@@ -331,11 +336,15 @@ class BuildingOrdeal:
         if "Traceback" in complaints:
             at = complaints.index("Traceback")
             outcome.findings.append(f"a traceback: {complaints[max(0, at - 300) : at + 3000]}")
-        setting = Setting(self.building, self.scene, self._robots, CAPACITY, asked)
-        ledger = OrdealLedger(self._service.journal, Truth(self._truth), setting, self._witness)
+        ledger = self.ledger(self.truth)
         outcome.counts += ledger.counts()
         outcome.findings += ledger.faults()
         outcome.findings += self._wrong_plans()
+
+    def ledger(self, truth: Path) -> OrdealLedger:
+        """Who judges what the journal says by what really was."""
+        setting = Setting(self.building, self.scene, self._robots, CAPACITY, self._asked)
+        return OrdealLedger(self._service.journal, Truth(truth), setting, self._witness)
 
     def _wrong_plans(self) -> list[str]:
         """Plans that the journal had, and that do not pass the checker."""
