@@ -13,9 +13,9 @@ what they kept. Then all is put right, and everything has to come to its end. Th
 (`ordeal_ledger.py`) compares what the journal says with what the world really was.
 
 An event is one of what happens, one question that somebody was asked, one leg or errand that has
-ended, one robot carried away, or one kill. `minutes` are of the sites' clocks. Building and draws
-are the same for the same seed; what comes when after a kill is not. The exit code is 1 where
-anything was found.
+ended, one robot carried away, one theft, or one kill. `minutes` are of the sites' clocks. Building
+and draws are the same for the same seed; what comes when after a kill is not. The exit code is 1
+where anything was found.
 """
 
 # ruff: noqa: T201
@@ -112,7 +112,8 @@ def main() -> int:
     )
     for prefix in SHOWN:
         print(f"{prefix.strip(' :')}: {told(counts, prefix)}")
-    print(f"{counts['carried']} carried, {counts['promise not kept']} promises not kept")
+    others = ("carried", "stolen", "promise not kept")
+    print("besides:", ", ".join(f"{counts[each]} {each}" for each in others))
     return 1 if found else 0
 
 

@@ -13,7 +13,6 @@ from mend.fleet.requests import RequestStatus, request_of
 from mend.maps.building.building import Building, PlaceKind
 from mend.server.client import MendClient
 from mend.server.client_errors import RefusedError, UnreachableError
-from mend.server.fleets.leg_task import item_of
 from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.views import FleetView, RequestView
 from mend.tasks.intervention import Act, Intervention
@@ -55,8 +54,8 @@ class SiteHappenings:
         """Something happens; what it was."""
         draws: dict[Callable[[FleetView], Awaitable[str]], float] = {
             self._ask: 10, self._cancel: 1.5, self._change: 1, self._fail: 1, self._back: 2,
-            self._bar: 1.5, self._clear: 1.5, self._tell_way: 1, self._steal: 0.7,
-            self._step_in: 2, self._send: 0.5, self._be_rude: 0.5,
+            self._bar: 1.5, self._clear: 1.5, self._tell_way: 1, self._step_in: 2,
+            self._send: 0.5, self._be_rude: 0.5,
         }  # fmt: skip
         (draw,) = self._chance.choices(list(draws), weights=list(draws.values()))
         what = draw.__name__.strip("_").replace("_", " ")
@@ -185,12 +184,6 @@ class SiteHappenings:
             report = WayReport(finding="blocked", between=between, until_s=until_s)
         await self._client.tell_of_way(self._site, report)
         return report.model_dump_json(exclude_none=True)
-
-    async def _steal(self, fleet: FleetView) -> str:
-        name = self._one([name for each in fleet.robots for name in each.aboard])
-        item = item_of(WHAT, name)
-        await self._intervene(fleet, Intervention(act=Act.STEAL, object=item))
-        return item
 
     async def _step_in(self, fleet: FleetView) -> str:
         await self._intervene(fleet, Intervention(act=Act.BLOCK))

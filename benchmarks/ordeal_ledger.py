@@ -160,6 +160,7 @@ class OrdealLedger:
             {r.body["prompt"] for r in self._of("prompt") if r.body["kind"] == "ask"}
         )
         found["event of the journal"] = len(self._rows)
+        found["stolen"] = sum(each.what == "stolen" for each in self._truth.kept)
         found["carried"] = sum(each.what == "carried" for each in self._truth.kept)
         found["promise not kept"] = sum(bool(e.body.get("lied")) for e in self._truth.kept)
         found["life of the world"] = self._truth.lives
@@ -249,6 +250,9 @@ class OrdealLedger:
         said = f"{who}: {action} '{ended['booking']}' at {place} is said to be done"
         span = begun["at_s"], ended["at_s"]
         states = list(self._truth.states_between(*span))
+        if action in FETCHES and self._had(number, begun):
+            # What a robot has, it need not go and fetch.
+            return
         if not any(self._away_m(each["robots"][number], place) <= AT_M for each in states):
             nearest = min((self._away_m(e["robots"][number], place) for e in states), default=-1.0)
             yield f"{said}, and its robot was {nearest:.1f} m off"
@@ -265,6 +269,13 @@ class OrdealLedger:
                 yield f"{said}, and it was never in the basket: {where[-1]}"
             if action in BRINGS and not any(e and e[0] == there for e in where):
                 yield f"{said}, and it is not there: {where[-1]}"
+
+    def _had(self, number: int, begun: dict[str, Any]) -> bool:
+        """Whether a robot had in its basket already what a leg is to fetch."""
+        what = self._what[begun["booking"]][-1].body["what"]
+        before = next(self._truth.items_between(begun["at_s"], begun["at_s"]))
+        item = before.get(item_of(what["what"], begun["booking"]))
+        return item is not None and item[1] == number and not item[2]
 
     def _away_m(self, at: Sequence[Any], place: str) -> float:
         pose = self._setting.scene.places[self._names.in_scene(place)].pose

@@ -43,6 +43,8 @@ GAP_S = 6.0
 LOOKS_EVERY_S = 0.2
 BOUND_S = 2 * 3600.0
 """By the site's clock everything is over so long after the last thing that happens."""
+STARTS_S = 300.0
+"""Patience with a start, on a machine that is busy."""
 PATIENCE_S = 120.0
 """With one answer of the service."""
 STANDS_STILL_S = 180.0
@@ -88,7 +90,7 @@ class Drawn:
         return {
             "localizer": self.localizer, "unmapped": 0.1, "shut_doors": 0.3, "people": 3,
             "wrong_floors": 0.2, "forgetful": 0.1, "no_shows": 0.1, "dawdling": 0.2,
-            "blocked_hallways": 0.1, "carried_every_s": 120.0, "lies": 0.1,
+            "blocked_hallways": 0.1, "carried_every_s": 120.0, "lies": 0.1, "steals_every_s": 240.0,
         }  # fmt: skip
 
     def __str__(self) -> str:
@@ -113,7 +115,14 @@ class Outcome:
     def events(self) -> int:
         """What happened, what robots ended, what somebody was asked, and kills."""
         happened = sum(n for what, n in self.counts.items() if what.startswith("happened: "))
-        others = ("question", "errand ended", "carried", "killed service", "killed robots")
+        others = (
+            "question",
+            "errand ended",
+            "carried",
+            "stolen",
+            "killed service",
+            "killed robots",
+        )
         legs = sum(n for what, n in self.counts.items() if what.startswith("leg "))
         return happened + legs + sum(self.counts[each] for each in others)
 
@@ -158,7 +167,7 @@ class BuildingOrdeal:
     async def go_through(self) -> Outcome:
         """Raises what `MendClient` does where the service does not start."""
         outcome, happenings = self._outcome, None
-        await self._service.start()
+        await self._start()
         following = asyncio.create_task(self._people.follow())
         try:
             async with MendClient(self._service.url, timeout_s=PATIENCE_S) as client:
@@ -180,6 +189,11 @@ class BuildingOrdeal:
             outcome.findings.append(f"the service ended with {code}")
         self._judge(happenings)
         return outcome
+
+    async def _start(self) -> None:
+        await self._service.spawn()
+        async with MendClient(self._service.url) as client:
+            await client.wait_until_ready(STARTS_S)
 
     async def _open(self, client: MendClient) -> SiteView:
         await client.upload_scene(self.scene.model_dump_json(exclude_defaults=True), "ordeal")
@@ -256,7 +270,7 @@ class BuildingOrdeal:
             if again:
                 await self._service.spawn()
                 await asyncio.sleep(self._chance.uniform(0.2, 3.0))
-        await self._service.start()
+        await self._start()
         self._moved_at = time.monotonic()
 
     async def _settle(

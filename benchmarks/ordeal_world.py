@@ -36,9 +36,13 @@ PROMISED = (Act.RELEASE, Act.PUT_IN, Act.TAKE_OUT, Act.SEND_PERSON)
 
 
 class WitnessedOptions(BuildingOptions):
-    """`lies`: how often somebody who has said that they do something does not do it."""
+    """`lies`: how often somebody who has said that they do something does not do it.
+
+    `steals_every_s`: about so often somebody takes a thing out of a basket; 0 is never.
+    """
 
     lies: Annotated[float, Field(ge=0.0, le=1.0, strict=False)] = 0.0
+    steals_every_s: Annotated[float, Field(ge=0.0, strict=False)] = 0.0
 
 
 class WitnessedBuilding(BuildingAdapter):
@@ -52,9 +56,10 @@ class WitnessedBuilding(BuildingAdapter):
     def create_agents(self, setup: WorldSetup) -> SharedWorld:
         options = dict(setup.options)
         lies = float(options.pop("lies", 0.0))
+        steals_every_s = float(options.pop("steals_every_s", 0.0))
         group = BUILDINGS.create_agents(setup.model_copy(update={"options": options}))
         assert isinstance(group.world, BuildingWorld)
-        Witness(group.world, lies, Path(os.environ[TRUTH]))
+        Witness(group.world, lies, steals_every_s, Path(os.environ[TRUTH]))
         return group
 
 
@@ -62,10 +67,13 @@ within, apart = WitnessedBuilding(own_process=False), WitnessedBuilding(own_proc
 
 
 class Witness:
-    """Writes down whatever happens in a world, and has people lie in it."""
+    """Writes down whatever happens in a world, and has people lie and steal in it."""
 
-    def __init__(self, world: BuildingWorld, lies: float, file: Path) -> None:
+    def __init__(
+        self, world: BuildingWorld, lies: float, steals_every_s: float, file: Path
+    ) -> None:
         self._world, self._lies, self._calm = world, lies, file.with_name(file.name + CALM)
+        self._steals = STATE_EVERY_S / steals_every_s if steals_every_s else 0.0
         self._file = os.open(file, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
         self._chance = Random()
         self._items: dict[str, list[Any]] = {}
@@ -100,6 +108,16 @@ class Witness:
         if world.time_s() >= self._shows_s:
             self._shows_s = world.time_s() + STATE_EVERY_S
             self._note_state()
+            if self._chance.random() < self._steals and not self._calm.exists():
+                self._steal()
+
+    def _steal(self) -> None:
+        """Somebody takes a thing out of a basket, if there is any in one."""
+        items = self._world.goods.items.items()
+        aboard = [name for name, each in items if each.robot is not None and not each.taken]
+        if aboard and not self._world.goods.steal(self._chance.choice(aboard)):
+            self._note_items()
+            self._write("stolen")
 
     def _intervene(self, intervention: Intervention) -> str:
         self._begin()
