@@ -71,13 +71,19 @@ class Ledger:
     def faults(self, witness: Witness) -> list[str]:
         """One sentence per thing that is lost, doubled, invented or broken."""
         return [
+            *self.faults_of_events(witness),
+            *self._against_runs(witness),
+            *self._against_answers(witness),
+        ]
+
+    def faults_of_events(self, witness: Witness) -> list[str]:
+        """What is wrong with the events themselves, and with what followers heard of them."""
+        return [
             *self._broken_pages(),
             *self._gaps(),
             *self._broken_chain(),
             *self._broken_runs(),
             *self._broken_dialogues(),
-            *self._against_runs(witness),
-            *self._against_answers(witness),
             *(each for name in witness.heard for each in self._against_heard(witness, name)),
         ]
 

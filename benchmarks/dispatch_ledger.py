@@ -145,7 +145,7 @@ class WitnessedDispatcher(Dispatcher):
             if was is None:
                 assert now in ("booked", "refused", "under_way", "waiting"), view
             elif was != now:
-                assert self._leads(was, now), f"{view.name} was {was} and is {now}"
+                assert leads(was, now), f"{view.name} was {was} and is {now}"
             ledger.statuses[view.name] = now
             if view.status is RequestStatus.DONE:
                 assert view.name in ledger.delivered, view
@@ -172,12 +172,13 @@ class WitnessedDispatcher(Dispatcher):
                 assert view.reason, view
                 assert "for a person to take it" in view.reason, view
 
-    def _leads(self, was: str, now: str) -> bool:
-        """Whether there is a way of legal steps: several may have come at the same moment."""
-        seen, ahead = {was}, [was]
-        while ahead:
-            for status in MAY_FOLLOW.get(ahead.pop(), ()):
-                if status not in seen:
-                    seen.add(status)
-                    ahead.append(status)
-        return now in seen
+
+def leads(was: str, now: str) -> bool:
+    """Whether there is a way of legal steps: several may have come at the same moment."""
+    seen, ahead = {was}, [was]
+    while ahead:
+        for status in MAY_FOLLOW.get(ahead.pop(), ()):
+            if status not in seen:
+                seen.add(status)
+                ahead.append(status)
+    return now in seen

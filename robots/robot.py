@@ -80,7 +80,7 @@ class Robot:
         self._activity: Routine[None] | None = None
         self._decided: Routine[None] | None = None
         self._looking = False
-        self._braking: Routine[None] | None = None
+        self._calming: Routine[None] | None = None
         self._execution: AnyExecution | None = None
         self._attempts: dict[str, int] = {}
         self._waiting: list[tuple[str, CommandBody]] = []
@@ -292,7 +292,7 @@ class Robot:
         execution = self._execution
         if execution is None or execution.over:
             if interrupt.retreat:
-                self._activity = self._retreat_idle()
+                self._activity = self._calming = self._retreat_idle()
             else:
                 self._hold(None)
         elif interrupt.retreat:
@@ -304,7 +304,7 @@ class Robot:
     def _hold(self, execution: str | None) -> None:
         """Say that it holds, once it stands."""
         if self._acting.effector.braking:
-            self._activity = self._braking = self._brake(execution)
+            self._activity = self._calming = self._brake(execution)
         else:
             self._activity = None
             self._report(Holding(execution=execution, at=self._where()))
@@ -369,8 +369,8 @@ class Robot:
 
     @property
     def _coming_to_rest(self) -> bool:
-        """Whether it retreats, or brakes before it holds."""
-        if self._activity is not None and self._activity is self._braking:
+        """Whether it retreats, or brakes before it holds, with an execution or without."""
+        if self._activity is not None and self._activity is self._calming:
             return True
         execution = self._execution
         return (

@@ -272,7 +272,11 @@ class Run:
         self._inbox.tell(lambda: self._presence.lost(self._proxies[robot], reason))
 
     async def _reported(self, proxy: RobotProxy, report: Report, receipt: Receipt) -> None:
-        if proxy.hello is not None and receipt.boot != proxy.hello.boot:
+        if proxy.hello is None:
+            # It has not come yet: what it still says of what it did before is nothing of this run.
+            await self._context.commit([], receipt=receipt, world=report.world)
+            return
+        if receipt.boot != proxy.hello.boot:
             # An earlier boot's: what it did was put back when the robot came with its new one.
             await self._context.commit([], receipt=receipt)
             return

@@ -16,12 +16,13 @@ from touching_robots import touching_robots
 from untruths import kinds_of
 
 from mend.errors import ConflictError, NotFoundError, WrongInputError
+from mend.robots.link.messages import Hello, Holding, Report
 from mend.server.client import MendClient
 from mend.server.client_errors import RefusedError
 from mend.server.composition import Service, open_service
 from mend.server.errors import ImpossibleError
 from mend.server.journal import events as ev
-from mend.server.journal.journal import Document, Entry
+from mend.server.journal.journal import Document, Entry, Receipt
 from mend.server.journal.run_index import RunPage
 from mend.server.robots.process import WorldProcess
 from mend.server.runtime.requests import RunRequest
@@ -128,6 +129,28 @@ async def test_a_run_finds_the_world_as_the_one_before_has_left_it(tmp_path: Pat
     assert steps[2]
     # Each run has a clock of its own, from 0.
     assert back[1].time < 5.0
+
+
+async def test_what_a_robot_still_says_to_the_site_is_no_report_to_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    connected, said = Run.robot_connected, list[asyncio.Task[None]]()
+
+    async def says_something_first(run: Run, robot: str, hello: Hello) -> None:
+        rests = Report(seq=1, time=4001.0, body=Holding(execution=None, at="neutral"))
+        receipt = Receipt(robot, "of the site", len(said) + 1)
+        said.append(asyncio.create_task(run.robot_reported(robot, rests, receipt)))
+        await asyncio.sleep(0)
+        await connected(run, robot, hello)
+
+    monkeypatch.setattr(Run, "robot_connected", says_something_first)
+    async with service(tmp_path) as found, asyncio.timeout(120.0):
+        site = await open_bench(found)
+        run = await begin(found, "red_near", site.id, robot(site, "left"))
+        events = await done(found, run)
+    assert said
+    assert events[1].time < 5.0
+    assert events[-1].time < 1000.0
 
 
 async def test_two_runs_share_a_site_and_never_touch(tmp_path: Path) -> None:

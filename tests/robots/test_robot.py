@@ -432,6 +432,16 @@ def test_a_start_right_after_a_retreat_command_waits_for_it() -> None:
     assert bench.of(Finished) == [Finished(execution="e3")]
 
 
+def test_a_start_right_after_a_retreat_command_waits_for_an_idle_robot_too() -> None:
+    bench = RobotBench()
+    bench.send(Interrupt(retreat=True))
+    bench.start("green_leg", "right")
+    bench.run()
+    assert bench.of(Rejected) == []
+    assert bench.of(Holding) == [Holding(execution=None, at="neutral")]
+    assert bench.of(Finished) == [Finished(execution="e2")]
+
+
 def test_an_interrupt_of_a_retreat_holds_and_resumes() -> None:
     bench = RobotBench()
     bench.at(5, 0.5, lambda: bench.body.vanish("pink_bar"))
