@@ -213,7 +213,7 @@ def _shafts(plan: _Plan, frames: Mapping[str, _Similarity]) -> list[_Shaft]:
     shafts = []
     for name, each in plan.lifts.items():
         reference = each.reference_floor_name or plan.reference_level_name
-        if reference in frames and each.width > 0.0 and each.depth > 0.0:
+        if reference is not None and reference in frames and each.width > 0.0 and each.depth > 0.0:
             middle = frames[reference](np.array([[each.x, each.y]]))[0]
             levels = _served(plan, each)
             shafts.append(_Shaft(name, levels, middle, each.yaw, each.width, each.depth))

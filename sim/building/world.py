@@ -342,6 +342,8 @@ class BuildingWorld:
             case Act.BAR | Act.CLEAR as act:
                 assert intervention.between is not None, "checked before"
                 return self._bar_or_clear(act, intervention.between)
+            case Act.MISDIRECT:
+                return self._misdirect(intervention.elevator)
             case Act.SEND_PERSON:
                 return self._send_people()
             case Act.STEAL:
@@ -358,6 +360,13 @@ class BuildingWorld:
                 return f"somebody is in the way between {lane[0]} and {lane[1]}"
         except ValueError as error:
             return str(error)
+        return ""
+
+    def _misdirect(self, elevator: str | None) -> str:
+        cabin = self.elevators.cabins.get(elevator or "")
+        if cabin is None:
+            return f"there is no elevator '{elevator}'"
+        cabin.misdirected = True
         return ""
 
     def _stands_in(self, floor: str, segments: NDArray[np.float64]) -> bool:
