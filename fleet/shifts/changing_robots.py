@@ -8,7 +8,7 @@ from mend.fleet.dispatch.setting import FleetSetting
 from mend.fleet.requests import LegAction, Transport
 from mend.maps.building.building import Building
 
-_TRIES = 60
+_TRIES = 120
 
 
 def changing_robots(

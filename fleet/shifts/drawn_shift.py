@@ -139,7 +139,8 @@ class _Drawing:
 
         def draw() -> Sequence[Transport]:
             if self._chance.random() < 0.5:
-                ends = [self._two_rooms() for _ in range(len(self._robots) + 1)]
+                many = self._chance.randint(len(self._robots), len(names))
+                ends = [self._two_rooms() for _ in range(many)]
             else:
                 ends = [self._two_of(zone) for zone in near]
                 self._chance.shuffle(ends)

@@ -203,11 +203,19 @@ class _Failing:
 
 
 def _who_brings(dispatcher: "Dispatcher") -> str | None:
-    """The robot with the longest way to where it hands something over; None for short ones."""
+    """The robot with the longest way to where it hands something over; None for short ones.
+
+    None either for who meets another robot: its failure would undo that.
+    """
+    meets = {
+        robot
+        for robot, stops in dispatcher.stops().items()
+        if any(action in (LegAction.GIVE, LegAction.TAKE) for _, action in stops)
+    }
     left_s = {
         leg.robot: leg.begins_s - dispatcher.now_s
         for leg in dispatcher.legs_under_way()
-        if leg.action is LegAction.HAND_OVER
+        if leg.action is LegAction.HAND_OVER and leg.robot not in meets
     }
     robot = max(left_s, key=lambda each: left_s[each], default=None)
     return None if robot is None or left_s[robot] < _STILL_DRIVES_S else robot

@@ -145,6 +145,7 @@ class BuildingWorld:
         self.walkers = Walkers(building, options.people, self.doors.values(), goods.seed)
         self.walkers.leave_room_for((each.at for each in self.robots), RADIUS_M)
         self.baskets = [RobotBasket(goods, each, goods.seed) for each in range(len(self.robots))]
+        goods.passed_on = lambda robot, item: self.baskets[robot].memory.note_passed_on(item)
         self.guests = Guests(options.no_shows, options.dawdling, places, goods.seed)
         self._around = Surroundings(
             segments=self._segments,
