@@ -1,4 +1,4 @@
-"""Many robots in the corridors of one building: how many drives an hour, and does one stand for ever?
+"""Many robots in the corridors of a building: how many drives an hour, and does one stand for ever?
 
     python benchmarks/building_corridors.py PLAN... [--robots 2 8 20] [--seconds 600] [--seed 0]
 

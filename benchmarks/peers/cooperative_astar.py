@@ -10,7 +10,7 @@ always at the floor where it is called.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
-from itertools import count
+from itertools import count, pairwise
 from math import ceil, inf
 
 from mend.maps.building.building import Building
@@ -53,7 +53,7 @@ def steps_of(building: Building) -> Mapping[Node, list[Move]]:
         parts = max(1, round(length_m / STEP_M))
         inner: list[Node] = [(way.a, way.b, str(number)) for number in range(1, parts)]
         chain: list[Node] = [(way.a,), *inner, (way.b,)]
-        for one, other in zip(chain, chain[1:], strict=False):
+        for one, other in pairwise(chain):
             moves.setdefault(one, []).append(Move(other, 1))
             if not way.one_way:
                 moves.setdefault(other, []).append(Move(one, 1))
@@ -116,10 +116,10 @@ class Planned:
         if found is None:
             return False
         del self._taken.stays[here]
-        for (node, time_s), (_, until_s) in zip(found, found[1:], strict=False):
+        for (node, time_s), (_, until_s) in pairwise(found):
             for second in range(time_s, until_s):
                 self._taken.at[node, second] = robot
-        for (a, begin_s), (b, end_s) in zip(found, found[1:], strict=False):
+        for (a, begin_s), (b, end_s) in pairwise(found):
             if ride := next((m.ride for m in self._moves[a] if m.to == b and m.ride), None):
                 self._taken.rides.setdefault(ride, []).append((begin_s, end_s, robot))
         self._taken.at[found[-1]] = robot
