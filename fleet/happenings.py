@@ -35,10 +35,13 @@ class WayBarred(Lasting):
 
 
 class RobotFails(Lasting):
-    """A robot, as the scene calls it, is taken out of service, and put back in."""
+    """A robot, as the scene calls it, is taken out of service, and put back in.
+
+    Where none is named, it is the next one that brings something.
+    """
 
     kind: Literal["robot_fails"]
-    robot: Name
+    robot: Name | None = None
     reason: Text = "it does not work"
 
 
@@ -56,6 +59,14 @@ class Cancelled(StrictModel):
     request: Annotated[str, Field(min_length=1, max_length=80)]
 
 
+class WrongFloor(StrictModel):
+    """Somebody presses another button: who rides next in an elevator is taken elsewhere first."""
+
+    kind: Literal["wrong_floor"]
+    at_s: Moment
+    elevator: Annotated[str, Field(min_length=1, max_length=64)]
+
+
 Happening = Annotated[
-    WayBarred | RobotFails | NobodyAnswers | Cancelled, Field(discriminator="kind")
+    WayBarred | RobotFails | NobodyAnswers | Cancelled | WrongFloor, Field(discriminator="kind")
 ]

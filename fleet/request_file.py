@@ -10,7 +10,7 @@ from mend.documents.problem import InvalidFileError, Problem
 from mend.documents.strict_model import StrictModel
 from mend.documents.validation import find_line, show_kind, validate_part
 from mend.fleet.happenings import Cancelled, Happening
-from mend.fleet.requests import Moment, Request, RequestName
+from mend.fleet.requests import Moment, PlaceName, Request, RequestName, Text
 
 MOST_REQUESTS = 1000
 
@@ -22,12 +22,15 @@ class RequestFileError(InvalidFileError):
 class RequestsDocument(StrictModel):
     """What a request file says.
 
-    `asked_s`: when a request is made, by its name; at once if it is not among them.
+    `asked_s`: when a request is made, by its name; at once if it is not among them. `helpers`: whom
+    robots ask, in this order; `transfer_places`: where things may change robots.
     """
 
     requests: Annotated[tuple[Request, ...], Field(min_length=1, max_length=MOST_REQUESTS)]
     asked_s: dict[RequestName, Moment] = {}
     happenings: Annotated[tuple[Happening, ...], Field(max_length=MOST_REQUESTS)] = ()
+    helpers: Annotated[tuple[Text, ...], Field(max_length=20)] = ()
+    transfer_places: Annotated[tuple[PlaceName, ...], Field(max_length=100)] = ()
 
 
 def read_request_file(path: Path) -> RequestsDocument:

@@ -75,6 +75,7 @@ DEEDS: dict[Act, str] = {
     Act.BAR: "bars the way between {between}",
     Act.CLEAR: "clears the way between {between}",
     Act.SEND_PERSON: "tells who is to follow a robot to come",
+    Act.MISDIRECT: "presses a wrong button in {elevator}",
 }
 
 PROMISES: dict[Help, str] = {
@@ -439,6 +440,7 @@ def deed_text(intervention: Intervention) -> str:
     text = DEEDS[intervention.act].format(
         object=intervention.object or "something",
         between=" and ".join(intervention.between or ()),
+        elevator=intervention.elevator,
     )
     if intervention.act is Act.STEAL and intervention.manner == "pull":
         text = f"pulls {intervention.object} out of the gripper"

@@ -42,6 +42,8 @@ class Act(StrEnum):
     """Unlock what was locked on a way, or take away what was put across it."""
     SEND_PERSON = "send_person"
     """Tell those who are to be escorted by robots that stand to come to them."""
+    MISDIRECT = "misdirect"
+    """Press another button in an elevator: who rides next is taken to a wrong floor first."""
 
 
 _WITHOUT_OBJECT = (
@@ -55,22 +57,26 @@ _WITHOUT_OBJECT = (
     Act.BAR,
     Act.CLEAR,
     Act.SEND_PERSON,
+    Act.MISDIRECT,
 )
 _OF_WAYS = (Act.BAR, Act.CLEAR)
 PlaceOfBuilding = Annotated[str, Field(min_length=1, max_length=130)]
 """A place of a building with its floor, as `F1/hall`."""
 
 
+ElevatorName = Annotated[str, Field(min_length=1, max_length=64)]
+
+
 class Intervention(StrictModel):
     """One thing that a person does in a world.
 
     `object` is required by every act but `block`, `release`, `cover`, `uncover`, `charge`,
-    `send_person`, `bar`, `clear`, and `put_in` and `take_out`, which are about any robot that asks
-    for it where they name none; `place` (a name of the scene) by `place`; `to` by `move`. A
-    `release` with both `object` and `place` frees that place as well, one with an `object` alone
-    puts that aside. `manner` says how `steal` takes the object: `vanish` at once, or `pull` it out
-    of the gripper by force. `between`: the neighbouring places of a building whose way is to be
-    barred, or cleared.
+    `send_person`, `bar`, `clear`, `misdirect`, and `put_in` and `take_out`, which are about any
+    robot that asks for it where they name none; `place` (a name of the scene) by `place`; `to` by
+    `move`. A `release` with both `object` and `place` frees that place as well, one with an
+    `object` alone puts that aside. `manner` says how `steal` takes the object: `vanish` at once, or
+    `pull` it out of the gripper by force. `between`: the neighbouring places of a building whose
+    way is to be barred, or cleared; `elevator`: the one of a building that is misdirected.
     """
 
     act: Annotated[Act, Field(strict=False)]
@@ -79,6 +85,7 @@ class Intervention(StrictModel):
     to: Pose | None = None
     manner: Literal["vanish", "pull"] = "vanish"
     between: Annotated[tuple[PlaceOfBuilding, PlaceOfBuilding] | None, Field(strict=False)] = None
+    elevator: ElevatorName | None = None
 
     @model_validator(mode="after")
     def _require_what_the_act_needs(self) -> Self:
@@ -88,4 +95,6 @@ class Intervention(StrictModel):
             raise ValueError("act 'move' needs a pose 'to'")
         if self.act in _OF_WAYS and self.between is None:
             raise ValueError(f"act '{self.act}' needs two places 'between' which the way is")
+        if self.act is Act.MISDIRECT and self.elevator is None:
+            raise ValueError("act 'misdirect' needs an 'elevator'")
         return self

@@ -6,7 +6,7 @@ they are degrees of longitude and latitude.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -62,7 +62,15 @@ class _Level(_Lenient):
 
 
 class _Lift(_Lenient):
+    """`x`, `y` in its reference level's drawing; `width` along its turned x axis, in metres."""
+
     level_doors: dict[Text, list[Text]] = {}
+    reference_floor_name: Text | None = None
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+    width: float = 0.0
+    depth: float = 0.0
 
 
 class _Plan(_Lenient):
@@ -84,8 +92,10 @@ def import_open_rmf(content: Any, graphs: Sequence[int] = ()) -> Imported:
     notes: list[str] = []
     frames = _frames(plan)
     order = sorted(plan.levels, key=lambda each: plan.levels[each].elevation)
+    shafts = _shafts(plan, frames)
     read = {
-        name: _read_level(name, plan.levels[name], frames[name], graphs, notes) for name in order
+        name: _read_level(name, plan.levels[name], frames[name], graphs, shafts, notes)
+        for name in order
     }
     elevators = _elevators(plan, read, notes)
     floors = {name: each.floor for name, each in read.items()}
@@ -178,6 +188,43 @@ def _from_globe(plan: _Plan) -> _Similarity:
 # --- Levels -----------------------------------------------------------------------------------
 
 
+@dataclass(frozen=True, slots=True)
+class _Shaft:
+    """The room of a lift's cabin in metres, above each other on the levels where it has doors."""
+
+    lift: str
+    levels: Collection[str]
+    middle: Matrix
+    yaw: float
+    width: float
+    depth: float
+
+    def away_m(self, point: Matrix) -> float | None:
+        """How far a point is from the middle; None for one outside."""
+        x, y = point - self.middle
+        along = x * math.cos(self.yaw) + y * math.sin(self.yaw)
+        across = y * math.cos(self.yaw) - x * math.sin(self.yaw)
+        if abs(along) > self.width / 2.0 or abs(across) > self.depth / 2.0:
+            return None
+        return math.hypot(x, y)
+
+
+def _shafts(plan: _Plan, frames: Mapping[str, _Similarity]) -> list[_Shaft]:
+    shafts = []
+    for name, each in plan.lifts.items():
+        reference = each.reference_floor_name or plan.reference_level_name
+        if reference is not None and reference in frames and each.width > 0.0 and each.depth > 0.0:
+            middle = frames[reference](np.array([[each.x, each.y]]))[0]
+            levels = _served(plan, each)
+            shafts.append(_Shaft(name, levels, middle, each.yaw, each.width, each.depth))
+    return shafts
+
+
+def _served(plan: _Plan, lift: _Lift) -> list[str]:
+    """The levels on which a lift has doors; where nothing is said of that, all."""
+    return [level for level, doors in lift.level_doors.items() if doors] or list(plan.levels)
+
+
 @dataclass(slots=True)
 class _Read:
     """A level as a floor, and what its vertices are called there."""
@@ -188,7 +235,12 @@ class _Read:
 
 
 def _read_level(
-    name: str, level: _Level, frame: _Similarity, graphs: Sequence[int], notes: list[str]
+    name: str,
+    level: _Level,
+    frame: _Similarity,
+    graphs: Sequence[int],
+    shafts: Sequence[_Shaft],
+    notes: list[str],
 ) -> _Read:
     points = frame(np.array([each[:2] for each in level.vertices], dtype=float).reshape(-1, 2))
     points = points.round(_DECIMALS) + 0.0
@@ -197,10 +249,13 @@ def _read_level(
     ]
     _require_vertices(name, level)
     on_lanes = sorted({end for each in lanes for end in each[:2]})
-    names = _names(name, level, on_lanes, notes)
+    lifts = _lifts_at(name, level, points, on_lanes, shafts)
+    names = _names(name, level, on_lanes, lifts, notes)
     places = {
         names[each]: FloorPlace(
-            x=points[each][0], y=points[each][1], kind=_kind(level.vertices[each])
+            x=points[each][0],
+            y=points[each][1],
+            kind=PlaceKind.ELEVATOR if each in lifts else _kind(level.vertices[each]),
         )
         for each in on_lanes
     }
@@ -211,12 +266,36 @@ def _read_level(
         walls=tuple(_segment(points, each) for each in level.walls),
         doors=_doors(name, level, points, notes),
     )
-    cabins = {
-        str(lift): names[each]
+    return _Read(floor, names, {lift: names[each] for each, lift in lifts.items()})
+
+
+def _lifts_at(
+    name: str,
+    level: _Level,
+    points: Matrix,
+    on_lanes: Sequence[int],
+    shafts: Sequence[_Shaft],
+) -> dict[int, str]:
+    """The lift of each vertex on a lane that is in a cabin.
+
+    Either the vertex says so, or where it is: plans of older editors leave it at that.
+    """
+    lifts = {
+        each: str(lift)
         for each in on_lanes
         if (lift := _property(level.vertices[each], "lift_cabin"))
     }
-    return _Read(floor, names, cabins)
+    for shaft in shafts:
+        if shaft.lift in lifts.values() or name not in shaft.levels:
+            continue
+        inside = [
+            (away_m, each)
+            for each in on_lanes
+            if each not in lifts and (away_m := shaft.away_m(points[each])) is not None
+        ]
+        if inside:
+            lifts[min(inside)[1]] = shaft.lift
+    return lifts
 
 
 def _require_vertices(name: str, level: _Level) -> None:
@@ -229,14 +308,19 @@ def _require_vertices(name: str, level: _Level) -> None:
                 )
 
 
-def _names(name: str, level: _Level, on_lanes: Sequence[int], notes: list[str]) -> dict[int, str]:
+def _names(
+    name: str,
+    level: _Level,
+    on_lanes: Sequence[int],
+    lifts: Mapping[int, str],
+    notes: list[str],
+) -> dict[int, str]:
     """What the vertices on lanes are called: as they are there, or by their numbers."""
     names: dict[int, str] = {}
     taken: set[str] = set()
     for each in on_lanes:
         vertex = level.vertices[each]
-        cabin = str(_property(vertex, "lift_cabin", ""))
-        own = _plain(_name_of(vertex)) or _plain(cabin) or f"v{each}"
+        own = _plain(_name_of(vertex)) or _plain(lifts.get(each, "")) or f"v{each}"
         called, number = own, 1
         while called in taken:
             number += 1
@@ -284,7 +368,7 @@ def _doors(name: str, level: _Level, points: Matrix, notes: list[str]) -> dict[s
 def _elevators(plan: _Plan, read: Mapping[str, _Read], notes: list[str]) -> dict[str, Elevator]:
     elevators = {}
     for lift, each in plan.lifts.items():
-        served = [level for level, doors in each.level_doors.items() if doors] or list(read)
+        served = _served(plan, each)
         stops = {
             name: level.cabins[lift]
             for name, level in read.items()
@@ -300,8 +384,6 @@ def _elevators(plan: _Plan, read: Mapping[str, _Read], notes: list[str]) -> dict
 
 
 def _kind(vertex: Vertex) -> PlaceKind:
-    if _property(vertex, "lift_cabin"):
-        return PlaceKind.ELEVATOR
     if _property(vertex, "is_charger"):
         return PlaceKind.CHARGER
     if _property(vertex, "is_parking_spot"):

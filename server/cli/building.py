@@ -45,11 +45,15 @@ def run(
     capacity: Annotated[float, typer.Option(help="How many loads a basket takes.")] = 3.0,
     transfer: Annotated[
         list[str] | None,
-        typer.Option(metavar="PLACE", help="Where things may change robots; may be repeated."),
+        typer.Option(
+            metavar="PLACE", help="Where things may change robots, instead of as the file says."
+        ),
     ] = None,
     helper: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="Whom robots ask, in this order; may be repeated."),
+        typer.Option(
+            metavar="NAME", help="Whom robots ask, in this order, instead of as the file says."
+        ),
     ] = None,
     journal: Annotated[Path | None, typer.Option(help="Where to keep its journal.")] = None,
     report: Annotated[
@@ -73,14 +77,18 @@ def run(
     with told_plainly():
         own = closed_settings()
         kept = journal or new_run_journal(own, "shift")
-        settings = own.model_copy(update={"journal": kept, "helpers": helper or []})
+        document = read_request_file(requests)
+        asked = helper or list(document.helpers)
+        settings = own.model_copy(update={"journal": kept, "helpers": asked})
         shift = Shift(
             read_scene(scene),
-            read_request_file(requests),
+            document,
             seed=seed,
             options=read_options(option or []),
             fleet=FleetOptions(
-                capacity=capacity, transfer_places=tuple(transfer or ()), answers="yes"
+                capacity=capacity,
+                transfer_places=tuple(transfer or document.transfer_places),
+                answers="yes",
             ),
             speed=read_speed(speed),
         )
@@ -182,7 +190,7 @@ def scene(
 ) -> None:
     """Write a scene file that task files can name: the building, its places, and robots in it.
 
-    Robots begin at chargers, or where they park, one on each floor first.
+    Robots begin one on each floor first, at a charger or where they park if there is one.
     """
     from mend.documents.problem import list_names
     from mend.documents.spellings import NAME, SPELLINGS
@@ -198,6 +206,44 @@ def scene(
         text = document_text(made.model_dump(mode="json", exclude_defaults=True))
         output.write_text(text, encoding="utf-8")
     typer.echo(f"{output}: {list_names(made.robots)} among {len(made.places)} places")
+
+
+@app.command("shift", short_help="Draw requests and happenings for a scene.")
+def shift(
+    scene: Annotated[
+        Path, typer.Argument(metavar="SCENE", help="A scene of a building (mend building scene).")
+    ],
+    output: OutputFile,
+    seed: Annotated[int, typer.Option(min=0, help="Another shift for each; always the same.")],
+    hours: Annotated[float, typer.Option(min=0.5, max=24.0, help="How long it lasts.")] = 2.0,
+) -> None:
+    """Draw what people ask, and what happens meanwhile, as a request file for `building run`.
+
+    Said is what cannot happen in this building, as where no elevator is.
+    """
+    from mend.fleet.shifts.drawn_shift import drawn_shift
+    from mend.maps.building.building_file import document_text
+    from mend.server.cli.task_files import read_scene
+    from mend.server.fleets.place_names import PlaceNames
+    from mend.sim.building.setting import building_of
+
+    with told_plainly():
+        read = read_scene(scene)
+        building = building_of(read)
+        places = PlaceNames(building, read)
+        starts = {
+            name: start
+            for name, base in read.robots.items()
+            if (start := places.nearest(base.x, base.y, base.z)) is not None
+        }
+        drawn = drawn_shift(building, starts, places.names, seed, hours * 3600.0)
+        output.parent.mkdir(parents=True, exist_ok=True)
+        text = document_text(drawn.document.model_dump(mode="json", exclude_none=True))
+        output.write_text(text, encoding="utf-8")
+    for note in drawn.notes:
+        typer.echo(note, err=True)
+    happen = len(drawn.document.happenings)
+    typer.echo(f"{output}: {len(drawn.document.requests)} requests, {happen} happenings")
 
 
 def _from_rmf(plan: Path, graphs: list[int]) -> "Imported":

@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Any, Literal
 from uuid import UUID
 
 from mend.errors import ConflictError, RefusalError
-from mend.fleet.happenings import Cancelled, Happening, NobodyAnswers, RobotFails, WayBarred
+from mend.fleet.happenings import (
+    Cancelled,
+    Happening,
+    NobodyAnswers,
+    RobotFails,
+    WayBarred,
+    WrongFloor,
+)
+from mend.fleet.requests import LegAction
 from mend.server.cli.failures import NOT_FINISHED
 from mend.server.cli.local_user import local_author
 from mend.server.cli.shift_transcript import ShiftTranscript
@@ -26,9 +34,15 @@ from mend.tasks.scene import Scene
 
 if TYPE_CHECKING:
     from mend.fleet.dispatch.booking import AnyRequest
+    from mend.fleet.dispatch.dispatcher import Dispatcher
     from mend.fleet.request_file import RequestsDocument
     from mend.server.composition import Service
     from mend.server.fleets.fleet_at_work import FleetAtWork
+
+
+_BRINGS_WITHIN_S, _LOOKS_EVERY_S, _STILL_DRIVES_S = 1800.0, 5.0, 15.0
+"""A robot that is to fail while it brings something is looked for so long, so often, and is one
+that drives so much longer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +152,9 @@ def _interventions(happenings: tuple[Happening, ...]) -> list[ScriptedInterventi
             if each.until_s is not None:
                 clear = Intervention(act=Act.CLEAR, between=each.between)
                 done.append(ScriptedIntervention(at_s=each.until_s, do=clear))
+        elif isinstance(each, WrongFloor):
+            press = Intervention(act=Act.MISDIRECT, elevator=each.elevator)
+            done.append(ScriptedIntervention(at_s=each.at_s, do=press))
     return done
 
 
@@ -145,7 +162,7 @@ def _moments(happening: Happening, fleet: "FleetAtWork", robots: Mapping[str, st
     """What is to be told to the fleet, and when."""
     author = local_author()
     match happening:
-        case WayBarred():
+        case WayBarred() | WrongFloor():
             return []
         case Cancelled(at_s=at_s, request=request):
 
@@ -154,14 +171,54 @@ def _moments(happening: Happening, fleet: "FleetAtWork", robots: Mapping[str, st
 
             return [Due(at_s, cancel)]
         case RobotFails(robot=robot, reason=reason):
-            name = robots.get(robot, robot)
-            begin = partial(fleet.take_out, name, reason, author)
-            end = partial(fleet.put_back, name, author)
+            failing = _Failing(fleet, None if robot is None else robots.get(robot, robot), reason)
+            begin, end = failing.begin, failing.end
         case NobodyAnswers():
             begin = partial(fleet.have_answered, "late")
             end = partial(fleet.have_answered, "yes")
     over = [] if happening.until_s is None else [Due(happening.until_s, end)]
     return [Due(happening.at_s, begin), *over]
+
+
+class _Failing:
+    """A robot that fails, and works again; where none is named, one that brings something."""
+
+    def __init__(self, fleet: "FleetAtWork", robot: str | None, reason: str) -> None:
+        self._fleet, self._robot, self._reason = fleet, robot, reason
+
+    async def begin(self) -> None:
+        """Raises `ConflictError` where no robot brings anything for long."""
+        until_s = self._fleet.now_s + _BRINGS_WITHIN_S
+        while self._robot is None:
+            self._robot = await self._fleet.read(_who_brings)
+            if self._robot is None:
+                if self._fleet.now_s >= until_s:
+                    raise ConflictError("no robot fails: none was on its way with anything")
+                await self._fleet.wait_until(self._fleet.now_s + _LOOKS_EVERY_S)
+        await self._fleet.take_out(self._robot, self._reason, local_author())
+
+    async def end(self) -> None:
+        if self._robot is not None:
+            await self._fleet.put_back(self._robot, local_author())
+
+
+def _who_brings(dispatcher: "Dispatcher") -> str | None:
+    """The robot with the longest way to where it hands something over; None for short ones.
+
+    None either for who meets another robot: its failure would undo that.
+    """
+    meets = {
+        robot
+        for robot, stops in dispatcher.stops().items()
+        if any(action in (LegAction.GIVE, LegAction.TAKE) for _, action in stops)
+    }
+    left_s = {
+        leg.robot: leg.begins_s - dispatcher.now_s
+        for leg in dispatcher.legs_under_way()
+        if leg.action is LegAction.HAND_OVER and leg.robot not in meets
+    }
+    robot = max(left_s, key=lambda each: left_s[each], default=None)
+    return None if robot is None or left_s[robot] < _STILL_DRIVES_S else robot
 
 
 async def _events(service: "Service") -> AsyncIterator[ev.Event]:

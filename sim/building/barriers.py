@@ -1,20 +1,16 @@
 """Ways that somebody has barred: a door is locked, or things stand right across a corridor."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mend.maps.building.building import Building, LaneCrossing
-from mend.maps.ray_cast import cast
+from mend.maps.building.right_across import right_across
 from mend.sim.building.doors import WorldDoors
 
 Matrix = NDArray[np.float64]
 Lane = tuple[str, str]
-
-_REACH_M = 4.0
-"""Things are put across a corridor from wall to wall, as far as it is no wider than twice this."""
 
 
 class Barriers:
@@ -38,7 +34,8 @@ class Barriers:
             for name in names:
                 self._doors[name].lock()
             return None
-        self._across[key] = crossing.floor, self._right_across(crossing)
+        floor = self._building.floors[crossing.floor]
+        self._across[key] = crossing.floor, right_across(floor, crossing.lane)[0]
         return self._across[key]
 
     def clear(self, lane: Lane) -> None:
@@ -76,17 +73,3 @@ class Barriers:
             if wanted == {f"{each.floor}/{end}" for end in each.lane.between}:
                 return each
         raise ValueError(f"no lane leads between {lane[0]} and {lane[1]}")
-
-    def _right_across(self, crossing: LaneCrossing) -> Matrix:
-        """From wall to wall through the middle of a lane."""
-        floor = self._building.floors[crossing.floor]
-        a, b = (floor.places[each] for each in crossing.lane.between)
-        x, y = (a.x + b.x) / 2.0, (a.y + b.y) / 2.0
-        aside = math.atan2(b.y - a.y, b.x - a.x) + math.pi / 2.0
-        directions = np.array([aside, aside + math.pi])
-        ways_m, _ = cast(floor.wall_segments, x, y, directions, _REACH_M)
-        ends = [
-            (x + away_m * math.cos(angle), y + away_m * math.sin(angle))
-            for away_m, angle in zip(ways_m, directions, strict=True)
-        ]
-        return np.array([[*ends[0], *ends[1]]])

@@ -62,6 +62,8 @@ class Cabin:
     since_s: float = 0.0
     heading_for: str | None = None
     calls: list[Call] = field(default_factory=list)
+    misdirected: bool = False
+    """Who rides next is taken to a wrong floor first."""
 
     def call(self, robot: int, begin: str, wants: str, *, stay_open: bool = False) -> None:
         """A robot wants a ride; it says so as often as it likes."""
@@ -151,7 +153,17 @@ class Cabin:
 
     def _next_floor(self, served: Call, inside: Sequence[int]) -> str:
         assert served.to is not None, "it was pressed"
-        return served.to if served.robot in inside else served.begin
+        if served.robot not in inside:
+            return served.begin
+        if self.misdirected:
+            self.misdirected = False
+            served.to = self._wrong_floor(served)
+        return served.to
+
+    def _wrong_floor(self, served: Call) -> str:
+        """The first other one; an elevator of two floors has only the one where it is."""
+        others = (each for each in self.plan.stops if each not in (served.wants, self.floor))
+        return next(others, self.floor)
 
     def _go(self, floor: str, time_s: float) -> None:
         if floor == self.floor:

@@ -50,6 +50,7 @@ class CabinSnapshot(StrictModel):
     until_s: float
     heading_for: str | None
     calls: list[tuple[int, str, str, str | None]]
+    misdirected: bool = False
 
 
 class ElevatorBank:
@@ -186,6 +187,7 @@ class ElevatorBank:
                 until_s=each.until_s,
                 heading_for=each.heading_for,
                 calls=[(call.robot, call.begin, call.wants, call.to) for call in each.calls],
+                misdirected=each.misdirected,
             )
             for name, each in self.cabins.items()
         }
@@ -199,6 +201,7 @@ class ElevatorBank:
             cabin.floor, cabin.state, cabin.heading_for = each.floor, each.state, each.heading_for
             cabin.since_s, cabin.until_s = each.since_s, each.until_s
             cabin.calls = [Call(*call) for call in each.calls]
+            cabin.misdirected = each.misdirected
 
 
 class RobotElevators:

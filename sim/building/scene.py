@@ -17,8 +17,8 @@ NEEDS_M = RADIUS_M + SPARE_M
 APART_M = 1.0
 """Robots begin so far from each other."""
 _ODD = re.compile(r"[^A-Za-z0-9_-]")
-_BEGINS = (PlaceKind.CHARGER, PlaceKind.PARKING, PlaceKind.WAYPOINT)
-"""Where robots begin, the first kind first."""
+_BEGINS = (PlaceKind.CHARGER, PlaceKind.PARKING, PlaceKind.ROOM, PlaceKind.WAYPOINT)
+"""Where robots begin on a floor, the first kind first: out of others' way."""
 _LONGEST = 64
 
 
@@ -62,14 +62,13 @@ def _unlike(name: str, others: Container[str]) -> str:
 
 
 def _begins(building: Building, robots: int) -> list[Base]:
-    """At chargers of different floors first."""
+    """One on each floor first, at a charger if it has one; then a second on each, and so on."""
     begins: list[Base] = []
-    for kind in _BEGINS:
-        for full in _by_turns(building.of_kind(kind)):
-            pose = _pose(building, full)
-            base = Base(x=pose.x, y=pose.y, z=pose.z or 0.0)
-            if len(begins) < robots and all(_far(base, each) for each in begins):
-                begins.append(base)
+    for full in _by_turns([each for kind in _BEGINS for each in building.of_kind(kind)]):
+        pose = _pose(building, full)
+        base = Base(x=pose.x, y=pose.y, z=pose.z or 0.0)
+        if len(begins) < robots and all(_far(base, each) for each in begins):
+            begins.append(base)
     if len(begins) < robots:
         raise WrongInputError(
             f"'{building.name}' has room for {len(begins)} robots at its places, not {robots}"

@@ -149,6 +149,7 @@ class BuildingWorld:
         self.walkers = Walkers(building, options.people, self.doors.values(), goods.seed)
         self.walkers.leave_room_for((each.at for each in self.robots), RADIUS_M)
         self.baskets = [RobotBasket(goods, each, goods.seed) for each in range(len(self.robots))]
+        goods.passed_on = lambda robot, item: self.baskets[robot].memory.note_passed_on(item)
         self.guests = Guests(options.no_shows, options.dawdling, places, goods.seed)
         self._around = Surroundings(
             segments=self._segments,
@@ -353,6 +354,8 @@ class BuildingWorld:
             case Act.BAR | Act.CLEAR as act:
                 assert intervention.between is not None, "checked before"
                 return self._bar_or_clear(act, intervention.between)
+            case Act.MISDIRECT:
+                return self._misdirect(intervention.elevator)
             case Act.SEND_PERSON:
                 return self._send_people()
             case Act.STEAL:
@@ -369,6 +372,13 @@ class BuildingWorld:
                 return f"somebody is in the way between {lane[0]} and {lane[1]}"
         except ValueError as error:
             return str(error)
+        return ""
+
+    def _misdirect(self, elevator: str | None) -> str:
+        cabin = self.elevators.cabins.get(elevator or "")
+        if cabin is None:
+            return f"there is no elevator '{elevator}'"
+        cabin.misdirected = True
         return ""
 
     def _stands_in(self, floor: str, segments: NDArray[np.float64]) -> bool:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from mend.fleet.happenings import Cancelled, NobodyAnswers, RobotFails, WayBarred
+from mend.fleet.happenings import Cancelled, NobodyAnswers, RobotFails, WayBarred, WrongFloor
 from mend.fleet.request_file import RequestFileError, read_request_file, read_request_text
 from mend.fleet.requests import DeliverMessage, Transport
 
@@ -28,6 +28,9 @@ happenings:
   - {kind: robot_fails, robot: r1, at_s: 5}
   - {kind: nobody_answers, at_s: 1, until_s: 2}
   - {kind: cancelled, request: parcel/2, at_s: 9}
+  - {kind: wrong_floor, elevator: lift1, at_s: 3}
+helpers: [reception]
+transfer_places: [F1/lift1]
 """
 
 
@@ -35,7 +38,8 @@ def test_what_happens_meanwhile_is_read_with_when_requests_are_made() -> None:
     document = read_request_text(GOOD + HAPPENING)
     assert document.asked_s == {"lunch": 60.0}
     kinds = [type(each) for each in document.happenings]
-    assert kinds == [WayBarred, RobotFails, NobodyAnswers, Cancelled]
+    assert kinds == [WayBarred, RobotFails, NobodyAnswers, Cancelled, WrongFloor]
+    assert (document.helpers, document.transfer_places) == (("reception",), ("F1/lift1",))
     assert document.happenings[0].between == ("F1/a", "F1/b")
 
 

@@ -181,11 +181,15 @@ def test_every_act_has_words(act: Act) -> None:
         Act.BAR: "between F1/hall and F1/101",
         Act.CLEAR: "between F1/hall and F1/101",
         Act.SEND_PERSON: "to come",
+        Act.MISDIRECT: "in lift",
     }
     object_name = None if act in without else "pink_bar"
     to = Pose(x=0.5, y=0.0) if act is Act.MOVE else None
     between = ("F1/hall", "F1/101") if act in (Act.BAR, Act.CLEAR) else None
-    intervention = Intervention(act=act, object=object_name, to=to, between=between)
+    elevator = "lift" if act is Act.MISDIRECT else None
+    intervention = Intervention(
+        act=act, object=object_name, to=to, between=between, elevator=elevator
+    )
     event = ev.InterventionDone(
         **EVENT, act=str(act), object=object_name, intervention=intervention, by="scenario"
     )

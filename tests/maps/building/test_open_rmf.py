@@ -128,3 +128,36 @@ def test_a_lane_to_a_vertex_that_is_not_there_is_refused() -> None:
 def test_what_is_no_plan_is_refused(content: object) -> None:
     with pytest.raises((ValidationError, WrongInputError)):
         import_open_rmf(content)
+
+
+def with_a_lift(yaw: float, **vertex: object) -> dict:
+    """Two levels of an older editor: a vertex is in the cabin, and does not say so."""
+    levels = {}
+    for name, elevation in (("L1", 0), ("L2", 4)):
+        one = level(elevation=elevation)
+        one["vertices"][1] = [200.0, 200.0, 0, "", vertex] if vertex else [200.0, 200.0, 0, ""]
+        levels[name] = one
+    content = plan(**levels)
+    # Its middle is 1 m below and 0.2 m right of the vertex; a pixel is 0.05 m.
+    content["lifts"]["Lift1"] |= {
+        "x": 204.0, "y": 220.0, "yaw": yaw, "width": 2.4, "depth": 0.6, "reference_floor_name": "L1"
+    }  # fmt: skip
+    return content
+
+
+def test_a_lift_is_where_its_cabin_is_drawn_if_no_vertex_says_so() -> None:
+    along_y, notes = imported(with_a_lift(math.pi / 2.0))
+    assert along_y.document.elevators["Lift1"].stops == {"L1": "Lift1", "L2": "Lift1"}
+    assert along_y.floors["L1"].places["Lift1"].kind is PlaceKind.ELEVATOR
+    assert notes == []
+
+
+def test_a_vertex_beside_the_cabin_is_not_in_it() -> None:
+    along_x, notes = imported(with_a_lift(0.0))
+    assert not along_x.document.elevators
+    assert "the lift 'Lift1' has lanes on 0 of its levels: it is left out" in notes
+
+
+def test_what_a_vertex_says_of_its_lift_counts_before_where_it_is() -> None:
+    said, _ = imported(with_a_lift(math.pi / 2.0, lift_cabin=[1, "Lift1"]))
+    assert said.document.elevators["Lift1"].stops == {"L1": "Lift1", "L2": "Lift1"}

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from mend.errors import IllegalTransitionError
 from mend.maps.building.building import Caller, Elevator
+from mend.maps.building.cabin import CABIN_DOOR_S
 from mend.sim.building.cabin import HELD_S, Cabin, CabinState
 
 FLOORS = ("F1", "F2", "F3")
@@ -156,3 +157,27 @@ def test_a_cabin_that_is_open_does_not_move() -> None:
     cabin.state = CabinState.OPEN
     with pytest.raises(IllegalTransitionError, match="expected shut"):
         cabin._go("F3", 1.0)
+
+
+@pytest.mark.parametrize("by", Caller)
+@pytest.mark.parametrize(("floors", "comes_to"), [(FLOORS, "F2"), (("F1", "F3"), "F1")])
+def test_who_is_misdirected_is_taken_elsewhere_first_once(
+    by: Caller, floors: tuple[str, ...], comes_to: str
+) -> None:
+    plan = Elevator(stops=dict.fromkeys(floors, "lift"), called_by=by)
+    shaft = Shaft(Cabin("lift", plan, FLOORS, "F1"))
+    shaft.cabin.misdirected = True
+    shaft.cabin.call(7, "F1", "F3")
+    shaft.cabin.calls[0].to = "F3"
+    shaft.until_open_at("F1")
+    shaft.inside = [7]
+    while shaft.cabin.state is not CabinState.SHUT:
+        shaft.wait(STEP_S)
+    shaft.until_open_at(comes_to)
+    shaft.wait(CABIN_DOOR_S + STEP_S)
+    call = shaft.cabin.call_of(7)
+    assert call is not None
+    assert call.to is None
+    call.to = "F3"
+    shaft.until_open_at("F3")
+    assert shaft.cabin.call_of(7) is None

@@ -78,6 +78,7 @@ const DONE: Readonly<Record<Intervention["act"], (object: string) => string>> = 
   bar: () => "A way of the building is barred.",
   clear: () => "A way of the building is cleared.",
   send_person: () => "Whom the robot escorts is told to come.",
+  misdirect: () => "A wrong button is pressed in an elevator.",
 };
 
 /** One sentence on what was done. */
