@@ -89,6 +89,15 @@ def _not_held_yet(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[s
     return "the fingers hold it" if record.holds(record.moment(index), event.object) else None
 
 
+def _handed_another(
+    record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]
+) -> str | None:
+    since = record.since_opened(index, event)
+    handed = [each for each in since if isinstance(each, ev.InterventionDone) and each.ok]
+    another = any(each.act == "hand_over" and each.object != event.object for each in handed)
+    return None if another else "nothing else was handed over"
+
+
 def _not_in_reach(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
     """What lies in the open, and not only since a moment ago, must not be told not to be there."""
     moment = record.moment(index)
@@ -228,6 +237,7 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"I cannot see the table", _dark_at_issue),
     (r"I do not see the table yet", _dark),
     (r"(?<!until )I see the table", _light),
+    (r"What I was handed does not look like", _handed_another),
     (r"I do not see the .* where I can reach it yet", _not_in_reach),
     (r"has toppled over", _toppled),
     (r"I cannot find the|cannot find it|I see it nowhere", _nowhere),

@@ -41,7 +41,7 @@ class Help(StrEnum):
 
 
 class Felt(StrEnum):
-    """What a robot feels in its basket while what it needs there is not so.
+    """What a robot feels in its basket, or is handed, while what it needs there is not so.
 
     A load cell tells how much, and never what.
     """
@@ -57,7 +57,8 @@ class Felt(StrEnum):
     HEAVIER = "heavier"
     """More than before, where less was asked for."""
     ANOTHER = "another"
-    """Less than before, but not by as much as what was asked for weighed."""
+    """Less than before, but not by as much as what was asked for weighed; of what was to be handed
+    over: something that does not look like it."""
 
 
 class CloseReason(StrEnum):

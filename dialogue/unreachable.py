@@ -1,7 +1,7 @@
 """The script for `unreachable`: hand it over (Blankenburg et al. 2020, Section 3.3)."""
 
 from mend.dialogue.offer import Offer, offer_script
-from mend.dialogue.script import Expectation, Help
+from mend.dialogue.script import Expectation, Felt, Help
 from mend.tasks.resolution import Resolution
 
 script = offer_script(
@@ -15,6 +15,10 @@ script = offer_script(
         thanks="Thank you. I have the {object} between my fingers.",
         unchanged="I have the {object} between my fingers.",
         not_seen="I do not see the {object} between my fingers yet. Are you still handing it over?",
+        not_felt={
+            Felt.ANOTHER: "What I was handed does not look like the {object}. Are you still "
+            "handing it over?"
+        },
         put_right={
             Expectation.AT_PLACE: Resolution.HUMAN_FINISH,
             Expectation.IN_REACH: Resolution.ROBOT_FINISH,

@@ -318,7 +318,8 @@ class Looked(Message):
     whose place is seen without the object; what something hides is in neither. `held`: the object
     that is between the fingers. `blind`: why the head camera showed nothing of the table, or of
     where the object that was just put down is to be, so that the look tells nothing of what is on
-    the table; None if it did. `felt`: what a basket felt where that was not what was expected.
+    the table; None if it did. `felt`: what a basket felt where that was not what was expected;
+    `another` also where something else than the object was held out to the fingers.
     `led_round`: `way_clear` is fulfilled because another way leads round, not because what was in
     the way is gone.
     """

@@ -170,14 +170,29 @@ class Namer:
         """
         knob_of: dict[int, Top] = {}
         taken: set[int] = set()
-        for plate in tops:
-            for other in tops:
-                if other is plate or not self._is_knob(other, plate, surfaces):
-                    continue
-                knob_of[id(plate)] = other
-                if all(plate.fitted.whole):
-                    taken.add(id(other))
+        for row, column in zip(*np.nonzero(self._may_be_knobs(tops, surfaces)), strict=True):
+            plate, other = tops[row], tops[column]
+            if not self._is_knob(other, plate, surfaces):
+                continue
+            knob_of[id(plate)] = other
+            if all(plate.fitted.whole):
+                taken.add(id(other))
         return [replace(each, knob=knob_of.get(id(each))) for each in tops if id(each) not in taken]
+
+    def _may_be_knobs(self, tops: Sequence[Top], surfaces: Surfaces) -> NDArray[np.bool_]:
+        """Of each pair of tops whether the second one may be a knob on the first one.
+
+        There may be hundreds of tops where an arm is in the picture.
+        """
+        rises_m = np.array([part.knob[2] for part in self._parts if part.knob is not None])
+        if not tops or not len(rises_m):
+            return np.zeros((len(tops), len(tops)), np.bool_)
+        heights = np.array([each.surface.top_z for each in tops])
+        colors = np.array([each.surface.color for each in tops])
+        rise_m = (heights[None] - heights[:, None])[..., None]
+        rises = (np.abs(rise_m - rises_m) <= surfaces.tolerance_m).any(axis=-1)
+        differs = np.abs(colors[None] - colors[:, None]).max(axis=-1) > surfaces.alike
+        return np.asarray(rises & ~differs & ~np.eye(len(tops), dtype=np.bool_), np.bool_)
 
     def _is_knob(self, knob: Top, plate: Top, surfaces: Surfaces) -> bool:
         """Whether one surface stands on another as some part's knob stands on its plate."""

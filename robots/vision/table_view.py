@@ -32,6 +32,10 @@ from mend.tasks.scene import Table
 _COMPLETE_SHARE = 0.8
 _HALF = 0.5
 _SHARED = 0.4
+_MUCH_OF_TOP = 0.2
+"""A surface of a smaller share of a top is surely less than half of it, however it was cut."""
+_BESIDE_KNOB = 0.1
+"""At least so much of a plate's top is to be seen beside its knob."""
 _APART_M = 0.005
 """Where badly seen boxes share less of their outline, or of their height, each may be right."""
 _OWN_M = 0.004
@@ -89,7 +93,8 @@ def view_table(
     namer, segmentation = Namer(known, model), model.segment(image.bgr)
     name = partial(namer.name, segmentation=segmentation, last_seen=last_seen.spots, wanted=wanted)
     seen = _understand(find_surfaces(heights), name, last_seen, image)
-    for joined in [each for each in seen.surfaces.all if each.pieces]:
+    may_be_parts = partial(_may_be_parts, heights=heights, parts=list(known.values()))
+    for joined in [each for each in seen.surfaces.all if any(map(may_be_parts, each.pieces))]:
         if len(seen.named) == len(known):
             break
         # It may be several, as high and of one colour, with something before them.
@@ -103,6 +108,27 @@ def view_table(
         if not _is_of(top, boxes, seen.surfaces.tolerance_m)
     ]
     return TableView(heights, sightings, [*boxes, *strange])
+
+
+def _may_be_parts(surface: Surface, heights: HeightMap, parts: Sequence[Part]) -> bool:
+    """Whether a surface may be the greater part of a top, and a part may be so high up.
+
+    Of an arm in the picture hundreds of bits may be seen that are neither.
+    """
+    highest_m = sum(max(*part.size, part.height) for part in parts)
+    if surface.top_z > heights.table_z + highest_m + _APART_M:
+        return False
+    pixel_m = float(heights.drop_m[surface.vs[0], surface.us[0]])
+    least_m2 = _MUCH_OF_TOP * min(map(_least_top_m2, parts), default=0.0)
+    return len(surface.us) * pixel_m**2 >= least_m2
+
+
+def _least_top_m2(part: Part) -> float:
+    """The smallest area that a part may show from above, upright or toppled."""
+    a, b, _ = sorted(part.size)
+    if part.knob is None:
+        return a * b
+    return min(a * b, math.prod(part.knob[:2]), _BESIDE_KNOB * part.size[0] * part.size[1])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -180,7 +206,7 @@ def _visible_share(match: Match, found: Rectangle, image: CameraImage) -> float:
     plate = cv2.convexHull(found.corners().astype(np.float32))
     covered, _ = cv2.intersectConvexConvex(hidden, plate)
     on_top_m2 = 0.0 if match.knob is None else knob[0] * knob[1]
-    return max(1.0 - (covered - on_top_m2) / math.prod(found.extents), 0.1)
+    return max(1.0 - (covered - on_top_m2) / math.prod(found.extents), _BESIDE_KNOB)
 
 
 def _boxes(match: Match, at: HeadSighting) -> list[SeenBox]:

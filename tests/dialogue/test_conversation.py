@@ -10,7 +10,17 @@ from mend.dialogue.conversation import Conversation, ConversationPhase
 from mend.dialogue.evidence import Change, PutRight
 from mend.dialogue.outlook import Next, Outlook, Sequel
 from mend.dialogue.registry import load_scripts
-from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Expectation, Help, Remark, Turn
+from mend.dialogue.script import (
+    Ask,
+    AwaitHelp,
+    Close,
+    CloseReason,
+    Expectation,
+    Felt,
+    Help,
+    Remark,
+    Turn,
+)
 from mend.errors import IllegalTransitionError
 from mend.tasks.issue import Issue, Sensed
 from mend.tasks.resolution import Resolution
@@ -118,6 +128,17 @@ def test_a_lost_part_is_put_back_or_placed_by_the_helper_or_tried_again_later(
     kind: str, calls: list[str], close: Close
 ) -> None:
     assert walk(kind, *calls)[-1] == close
+
+
+def test_who_hands_over_another_part_hears_that_it_does_not_look_like_it() -> None:
+    conversation = conversation_about("unreachable")
+    conversation.open()
+    conversation.answer("yes")
+    (asked,) = conversation.help_not_seen(Felt.ANOTHER)
+    assert isinstance(asked, Ask)
+    assert asked.text == (
+        "What I was handed does not look like the pink bar. Are you still handing it over?"
+    )
 
 
 @pytest.mark.parametrize(

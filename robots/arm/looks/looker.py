@@ -10,7 +10,7 @@ from mend.robots.arm.perception import Perception
 from mend.robots.arm.result import JudgedResult
 from mend.robots.body import CameraImage
 from mend.robots.execution.routine import Routine
-from mend.robots.link.messages import FinishedResult, Looked, ReportBody
+from mend.robots.link.messages import FeltLoad, FinishedResult, Looked, ReportBody
 from mend.robots.vision.behind_others import BehindOthers
 from mend.robots.vision.presence import Presence
 
@@ -44,9 +44,12 @@ class Looker:
         if self.may_move:
             yield from self.arm.go_to_neutral()
 
-    def answer(self, command: str, fulfilled: bool | None) -> Looked:
+    def answer(
+        self, command: str, fulfilled: bool | None, *, felt: FeltLoad | None = None
+    ) -> Looked:
         """All that the head camera sees now; it judges no results."""
-        return self._looked(command, fulfilled, self.perception.head.look(), {})
+        looked = self._looked(command, fulfilled, self.perception.head.look(), {})
+        return looked.model_copy(update={"felt": felt})
 
     def answer_and_judge(self, command: str, fulfilled: bool | None) -> Routine[Looked]:
         """All that the head camera sees, and what became of the finished results.

@@ -215,6 +215,23 @@ def test_what_is_handed_over_is_not_put_on_another_part() -> None:
     assert [each.issue for each in driver.issues] == ["missing", "blocked"]
 
 
+def test_another_part_that_is_handed_over_is_told_of() -> None:
+    driver = make_driver()
+    driver.send(by_ann(Act.STEAL, object="o1"))
+    driver.start("o1", "p1")
+    driver.run()
+    asked = Look(object="o1", expect="in_gripper", within_s=8.0)
+    assert expect(driver, asked) is False
+    assert driver.of(Looked)[-1].body.felt is None
+    started_s = driver.group.time_s()
+    driver.send(asked)
+    driver.run(until=lambda: driver.group.time_s() > started_s + 2.0, chunk_s=0.5)
+    driver.send(by_ann(Act.HAND_OVER, object="o3"))
+    driver.run()
+    looked: Looked = driver.of(Looked)[-1].body
+    assert (looked.fulfilled, looked.felt) == (False, "another")
+
+
 def test_a_robot_that_stays_blocked_can_still_retreat() -> None:
     driver = make_driver(LAID_OUT, during(5, 0.3, Intervention(act=Act.BLOCK)))
     driver.start("o1", "p1")
