@@ -19,6 +19,7 @@ from mend.fleet.requests import RequestKind
 from mend.server.access.principal import RESERVED
 from mend.server.background import Endless
 from mend.server.fleets.alarms import Alarms
+from mend.server.fleets.charging import LEAVES_AT, who_charges
 from mend.server.fleets.closed_ways import ClosedWays
 from mend.server.fleets.errands import Errands
 from mend.server.fleets.fleet_news import FleetNews
@@ -48,6 +49,8 @@ LOOKS_AGAIN_S = 5.0
 """While a robot waits at the place of its leg, the leg is looked after that often (site's time)."""
 
 
+CHARGES_AGAIN_S = 600.0
+"""Who could not charge, or had something to do instead, does not try again for so long."""
 OTHERS_S = 3.0
 """So long a robot whose way is barred lets others go instead before it asks people (its time)."""
 
@@ -100,6 +103,8 @@ class FleetAtWork:
         """What robots had driven when they set out for the leg that they are on."""
         self._told_others: dict[str, tuple[int, Finding, frozenset[str]]] = {}
         """By robot, what it has last found of which way, and on which leg."""
+        self._charges_again_s: dict[str, float] = {}
+        """When robots may charge by themselves again that could not."""
         self._kept: FleetRecord | None = None
         self._noted: list[ev.Event] = []
         self._alarms = Alarms(lambda: self.now_s)
@@ -136,6 +141,7 @@ class FleetAtWork:
 
     async def _go_on(self) -> None:
         async with self._at_once:
+            self._send_to_charge()
             unwanted = await asyncio.to_thread(self._decide, self.now_s)
             for robot, to in list(who_makes_way(self.dispatcher, self.places.names)):
                 if robot not in self._errands.going and self._site.rests(robot):
@@ -150,7 +156,9 @@ class FleetAtWork:
                 execution.look_again()
             self._alarms.ring()
             self._let_time_pass()
-            errands = list(self._errands.going.values())
+            errands, charged = list(self._errands.going.values()), self._charged_enough()
+        for errand in charged:
+            await self._errands.break_off(errand)
         for errand in errands:
             if errand.robot not in self._going:
                 task = asyncio.create_task(self._go(errand), name=f"errand of {errand.robot}")
@@ -174,6 +182,29 @@ class FleetAtWork:
             self._set_out[due[0].robot] = self._site.odometer(due[0].robot)
             self._noted.append(self._news.begun(due[0], start))
         return unwanted
+
+    def _send_to_charge(self) -> None:
+        """Have robots charge whose batteries hold little, where that is known."""
+        shares = {
+            robot: share
+            for robot in self.dispatcher.fleet.robots
+            if self._is_free(robot) and self.now_s >= self._charges_again_s.get(robot, 0.0)
+            if (share := self._site.battery(robot)) is not None
+        }
+        for robot, charger in list(who_charges(self.dispatcher, shares, self.places.names)):
+            self._send(robot, charger, None, charges=True)
+
+    def _charged_enough(self) -> list[Errand]:
+        """Those that are to be broken off: their robots charge, and have something to do."""
+        charged = [
+            errand
+            for errand in self._errands.going.values()
+            if errand.charges and (self._site.battery(errand.robot) or 0.0) >= LEAVES_AT
+        ]
+        if not charged:
+            return []
+        due = {leg.robot for leg in self.dispatcher.legs_to_begin(self.now_s)}
+        return [errand for errand in charged if errand.robot in due]
 
     def _is_free(self, robot: str) -> bool:
         return self._site.rests(robot) and robot not in self._errands.going
@@ -288,9 +319,11 @@ class FleetAtWork:
         told = f"found of the way between {a} and {b}: {finding}"
         self._noted.append(self._news.told(told, finder=found.by))
 
-    def _send(self, robot: str, place: str, author: ev.Author | None) -> None:
+    def _send(
+        self, robot: str, place: str, author: ev.Author | None, *, charges: bool = False
+    ) -> None:
         """Have a robot without a leg go somewhere, once that is journaled."""
-        errand = self._errands.add(robot, place)
+        errand = self._errands.add(robot, place, charges=charges)
         self._noted.append(self._news.errand_begun(errand, self._at(robot), author))
 
     async def _go(self, errand: Errand) -> None:
@@ -305,6 +338,8 @@ class FleetAtWork:
             reason, begun = "a fault of Mend's own; see its log", False
         async with self._at_once:
             at = errand.place if reason is None else self._at(robot)
+            if errand.charges and reason is not None:
+                self._charges_again_s[robot] = self.now_s + CHARGES_AGAIN_S
             self._noted.append(self._news.errand_ended(errand, at, reason))
             try:
                 self._errands.end(errand, at)
