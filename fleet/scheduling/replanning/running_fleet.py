@@ -312,7 +312,7 @@ class RunningFleet:
                 place = state.place_number(event.at)
                 selling = observed_stops.fail(state, number, place, event.again_s)
             case LetGo():
-                selling = observed_stops.let_go(state, number)
+                selling = observed_stops.let_go(state, number, state.place_number(event.at))
         return self._replan(selling)
 
     def _set_out(self, number: int) -> Outcome:
