@@ -25,10 +25,11 @@ class TakingOver:
         leg = self._state.under_way.get(found.by or "")
         if leg is None or self._state.fleet.items[leg.booking].robot is not None:
             return None
-        now_s = self._state.fleet.now_s
+        now_s, stands_at = self._state.fleet.now_s, closing.between[0]
         trial = self._state.fleet.fork()
         try:
-            outcomes = [trial.apply(event, now_s) for event in (closing, LetGo(leg.robot))]
+            events = (closing, LetGo(leg.robot, stands_at))
+            outcomes = [trial.apply(event, now_s) for event in events]
         except EventError:
             return None
         other = next((r for r in trial.robots if r != leg.robot and _does(trial, r, leg)), None)
@@ -45,7 +46,7 @@ class TakingOver:
         state.apply(closing, why, ())
         barred = f"which found no way between {a} and {b}"
         why = f"{other} takes over '{leg.booking}' from {leg.robot}, {barred}"
-        state.apply(LetGo(leg.robot), why, {leg.booking})
+        state.apply(LetGo(leg.robot, a), why, {leg.booking})
         state.settle()
 
     def _calls(self, fleet: RunningFleet) -> int:

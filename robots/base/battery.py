@@ -14,6 +14,11 @@ class Battery(Protocol):
     """What a base drives on."""
 
     @property
+    def endless(self) -> bool:
+        """Whether it never runs out."""
+        ...
+
+    @property
     def share(self) -> float:
         """How much it holds of what it can, in [0, 1]."""
         ...
@@ -27,5 +32,6 @@ class Battery(Protocol):
 class MainsPower:
     """Where a base never runs out."""
 
+    endless = True
     share = 1.0
     charging = False

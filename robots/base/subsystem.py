@@ -160,13 +160,16 @@ class BaseSubsystem:
         return layout.model_copy(update={"drives": True})
 
     def show(self, poses: Poses) -> Poses:
-        """Where the base frame is, on which floor, and how sure it is of that."""
+        """Where the base frame is, on which floor, how sure it is of that, and its battery."""
         here = self.effector.body.pose()
         half = here.yaw / 2
         base = (here.x, here.y, here.z, 0.0, 0.0, math.sin(half), math.cos(half))
         known = self.effector.whereabouts.covariance()
         covariance = None if known is None else list(known)
-        return poses.model_copy(update={"base": base, "covariance": covariance})
+        battery = self.effector.battery
+        share = None if battery.endless else battery.share
+        shown = {"base": base, "covariance": covariance, "battery": share}
+        return poses.model_copy(update=shown)
 
     def note(self, looked: Looked) -> None:
         """What others located does not concern it."""

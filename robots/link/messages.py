@@ -672,7 +672,8 @@ class Poses(Message):
     `base`: the robot's base frame, as it stands now, in that in which the robot began, but z from
     the ground of the scene; all other poses are in the base frame. `covariance`: how sure it is of
     that, as the variances and the covariance xx, xy, yy of its place along the axes of its map
-    (m2); None where it does not say. `tool`: the tool point (x the approach direction, y the
+    (m2); None where it does not say. `battery`: what its battery holds, as a share of what it can;
+    None where it does not run out. `tool`: the tool point (x the approach direction, y the
     opening direction of the fingers).
     """
 
@@ -681,6 +682,7 @@ class Poses(Message):
     joints: list[Coordinate] = []
     base: PoseValues = IDENTITY
     covariance: Annotated[list[Coordinate], Field(min_length=3, max_length=3)] | None = None
+    battery: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
     tool: PoseValues
     opening_m: Coordinate
     objects: list[ShownPose] = []

@@ -8,7 +8,7 @@ from uuid import UUID, uuid4
 from mend.errors import ConflictError, RefusalError
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.server.fleets.fleet_record import Errand
-from mend.server.fleets.leg_task import way_of, way_request
+from mend.server.fleets.leg_task import charging_at, way_of, way_request
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.runs import Runs
 from mend.server.runtime.views import RunStatus
@@ -62,9 +62,10 @@ class Errands:
             busy = "has not come to rest yet" if run is None else f"is busy with run {run}"
             raise ConflictError(f"robot '{robot}' {busy}")
 
-    def add(self, robot: str, place: str) -> Errand:
+    def add(self, robot: str, place: str, *, charges: bool = False) -> Errand:
         """One that is to be carried out, to a place as `FLOOR/PLACE`."""
-        errand = self._going[robot] = Errand(robot=robot, place=place, run=uuid4())
+        errand = Errand(robot=robot, place=place, run=uuid4(), charges=charges)
+        self._going[robot] = errand
         return errand
 
     async def carry_out(self, errand: Errand) -> str | None:
@@ -73,7 +74,8 @@ class Errands:
         Raises a `RefusalError` where it cannot be begun.
         """
         request = way_request(self._site.id, errand.robot, self._options())
-        tree = way_of(self._places.in_scene(errand.place))
+        place = self._places.in_scene(errand.place)
+        tree = charging_at(place) if errand.charges else way_of(place)
         await self._runs.start_run_of(errand.run, request, tree)
         if errand.run in self._unwanted:
             await self.break_off(errand)

@@ -19,18 +19,20 @@ from mend.fleet.requests import RequestKind
 from mend.server.access.principal import RESERVED
 from mend.server.background import Endless
 from mend.server.fleets.alarms import Alarms
+from mend.server.fleets.charging import Charging
 from mend.server.fleets.closed_ways import ClosedWays
 from mend.server.fleets.errands import Errands
 from mend.server.fleets.fleet_news import FleetNews
 from mend.server.fleets.fleet_record import Errand, FleetRecord
 from mend.server.fleets.fleets import KIND
+from mend.server.fleets.found_ways import FoundWays
 from mend.server.fleets.leg_execution import LegExecution, LegTurn
 from mend.server.fleets.leg_task import doable_kinds, require_doable, taken_out
 from mend.server.fleets.making_way import who_makes_way
 from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
-from mend.server.fleets.robot_findings import finding_of, findings, is_led_round
+from mend.server.fleets.robot_findings import finding_of, findings
 from mend.server.fleets.runs import Runs
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Document, Entry, Journal
@@ -93,13 +95,13 @@ class FleetAtWork:
         )
         self._going: dict[str, asyncio.Task[None]] = {}
         self.closed_ways = ClosedWays(dispatcher, () if kept is None else kept.closed_ways)
+        self._found_ways = FoundWays(dispatcher, self.closed_ways)
+        self._charging = Charging(dispatcher, site.battery, places.names)
         self._behaviors = load_plugins("mend.behaviors")
         self._main: asyncio.Task[None] | None = None
         self._hears: asyncio.Task[None] | None = None
         self._set_out: dict[str, Odometer | None] = {}
         """What robots had driven when they set out for the leg that they are on."""
-        self._told_others: dict[str, tuple[int, Finding, frozenset[str]]] = {}
-        """By robot, what it has last found of which way, and on which leg."""
         self._kept: FleetRecord | None = None
         self._noted: list[ev.Event] = []
         self._alarms = Alarms(lambda: self.now_s)
@@ -136,6 +138,9 @@ class FleetAtWork:
 
     async def _go_on(self) -> None:
         async with self._at_once:
+            free = [each for each in self.dispatcher.fleet.robots if self._is_free(each)]
+            for robot, charger in self._charging.to_send(free, self.now_s):
+                self._send(robot, charger, None, charges=True)
             unwanted = await asyncio.to_thread(self._decide, self.now_s)
             for robot, to in list(who_makes_way(self.dispatcher, self.places.names)):
                 if robot not in self._errands.going and self._site.rests(robot):
@@ -151,6 +156,9 @@ class FleetAtWork:
             self._alarms.ring()
             self._let_time_pass()
             errands = list(self._errands.going.values())
+            charged = self._charging.enough(errands, self.now_s)
+        for errand in charged:
+            await self._errands.break_off(errand)
         for errand in errands:
             if errand.robot not in self._going:
                 task = asyncio.create_task(self._go(errand), name=f"errand of {errand.robot}")
@@ -244,42 +252,11 @@ class FleetAtWork:
 
     async def _robot_found(self, found: Found) -> None:
         async with self._told():
-            leg = self._leg_of(found.by)
-            if self._is_told_already(found, leg):
-                return
             try:
-                if self._is_news(found, leg):
-                    await asyncio.to_thread(self.dispatcher.found, found, self.now_s)
-                elif not await self._is_taken_over(found, leg):
-                    return
-                self.closed_ways.note(found, found.by)
-                self._note_found(found)
+                if await asyncio.to_thread(self._found_ways.take, found, self.now_s):
+                    self._note_found(found)
             except RefusalError as error:
                 log.info("what %s found of its way changes no plan: %s", found.by, error)
-
-    async def _is_taken_over(self, found: Found, leg: Leg | None) -> bool:
-        """Whether another robot does a leg on whose way nobody gets on."""
-        if leg is None or found.finding is Finding.OPEN:
-            return False
-        return await asyncio.to_thread(self.dispatcher.take_over, found, self.now_s) is not None
-
-    def _is_told_already(self, found: Found, leg: Leg | None) -> bool:
-        """Whether a robot has told others of it before, and asks people about it now."""
-        if leg is None:
-            return False
-        told = (leg.number, found.finding, frozenset(found.between))
-        before, self._told_others[leg.robot] = self._told_others.get(leg.robot), told
-        return told == before and found.finding is not Finding.OPEN
-
-    def _leg_of(self, robot: str | None) -> Leg | None:
-        return next((e for e in self.dispatcher.legs_under_way() if e.robot == robot), None)
-
-    def _is_news(self, found: Found, leg: Leg | None) -> bool:
-        """Whether what a robot has found is something for others to go by."""
-        closed, graph = self.dispatcher.closed_until_s(), self.dispatcher.building.graph
-        if found.finding is Finding.OPEN:
-            return frozenset(found.between) in closed
-        return is_led_round(graph, closed, found, found.between[1] if leg is None else leg.place)
 
     def _note_found(self, found: Found) -> None:
         """It is told even where it changes nobody's plan."""
@@ -288,9 +265,11 @@ class FleetAtWork:
         told = f"found of the way between {a} and {b}: {finding}"
         self._noted.append(self._news.told(told, finder=found.by))
 
-    def _send(self, robot: str, place: str, author: ev.Author | None) -> None:
+    def _send(
+        self, robot: str, place: str, author: ev.Author | None, *, charges: bool = False
+    ) -> None:
         """Have a robot without a leg go somewhere, once that is journaled."""
-        errand = self._errands.add(robot, place)
+        errand = self._errands.add(robot, place, charges=charges)
         self._noted.append(self._news.errand_begun(errand, self._at(robot), author))
 
     async def _go(self, errand: Errand) -> None:
@@ -305,6 +284,8 @@ class FleetAtWork:
             reason, begun = "a fault of Mend's own; see its log", False
         async with self._at_once:
             at = errand.place if reason is None else self._at(robot)
+            if errand.charges and reason is not None:
+                self._charging.could_not(robot, self.now_s)
             self._noted.append(self._news.errand_ended(errand, at, reason))
             try:
                 self._errands.end(errand, at)
@@ -440,7 +421,7 @@ class FleetAtWork:
                 raise ConflictError(f"robot '{robot}' is out of service already")
             self.out_of_service[robot] = reason
             self._note(f"took {robot} out of service: {reason}", author, robot, in_service=False)
-            leg = self._leg_of(robot)
+            leg = next((e for e in self.dispatcher.legs_under_way() if e.robot == robot), None)
             errand = self._errands.going.get(robot)
             if leg is None and self.dispatcher.fleet.robots[robot].works:
                 self.dispatcher.robot_failed(robot, self._met_at(robot), reason, self.now_s)

@@ -102,6 +102,7 @@ class FleetNews:
             place=errand.place,
             start=start,
             author=author,
+            charges=errand.charges,
         )
 
     def errand_ended(self, errand: Errand, at: str, reason: str | None) -> ev.ErrandEnded:

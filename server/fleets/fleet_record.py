@@ -9,11 +9,12 @@ from mend.fleet.requests import PlaceName
 
 
 class Errand(StrictModel):
-    """A robot that carries out no leg goes to a place, in a run of its own."""
+    """A robot that carries out no leg goes to a place, in a run of its own; `charges` there."""
 
     robot: str
     place: PlaceName
     run: UUID
+    charges: bool = False
 
 
 class ToldWay(StrictModel):

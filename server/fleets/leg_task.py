@@ -29,6 +29,7 @@ from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
 from mend.tasks.scenario import Person
 
 GO_TO = "go_to"
+CHARGE = "charge"
 BEHAVIORS = {
     LegAction.DELIVER_MESSAGE: "deliver_message",
     LegAction.MEET: "meet_person",
@@ -120,6 +121,11 @@ def require_doable(request: AnyRequest, behaviors: Mapping[str, type[Behavior]])
 def way_of(place: str, near_m: float = 0.0) -> TaskTreeDefinition:
     """The task of going to a place, as the scene calls it, or near to it if it is not free."""
     return _leaf(GO_TO, {"place": place, "near_m": near_m} if near_m else {"place": place})
+
+
+def charging_at(place: str) -> TaskTreeDefinition:
+    """The task of charging at a charger, as the scene calls it, until the battery is full."""
+    return _leaf(CHARGE, {"place": place})
 
 
 def task_of(leg: Leg, place: str) -> TaskTreeDefinition:

@@ -785,7 +785,7 @@ class LegEnded(LegEvent):
 class ErrandBegun(FleetEvent):
     """A robot that carries out no leg is sent from `start` to a place: `author` wants it there.
 
-    Without an author it goes out of another robot's way.
+    Without an author it goes out of another robot's way, or `charges` there.
     """
 
     type: Literal["errand_begun"] = "errand_begun"
@@ -793,6 +793,7 @@ class ErrandBegun(FleetEvent):
     place: str
     start: str
     author: Author | None = None
+    charges: bool = False
 
 
 class ErrandEnded(FleetEvent):

@@ -136,6 +136,11 @@ class Site:
         age_s = self.shown_s - poses.time
         return SeenBase(in_scene(self._frames[robot], poses.base), age_s, poses.covariance)
 
+    def battery(self, robot: str) -> float | None:
+        """What a robot's battery holds, as a share; None where it does not run out or say so."""
+        poses = self._registry.poses(robot)
+        return None if poses is None else poses.battery
+
     def odometer(self, robot: str) -> Odometer | None:
         """What a robot had driven when it last said so while no run had it, or at a run's end."""
         return self._odometers.get(robot)

@@ -12,6 +12,8 @@ class Ledger:
 
     def __init__(self) -> None:
         self.holder: dict[str, str] = {}
+        self.baskets: dict[str, str] = {}
+        """What lies in the basket of a robot that has failed: whose that is."""
         self.delivered: set[str] = set()
         self._read = 0
 
@@ -25,6 +27,7 @@ class Ledger:
             if done.action in (Action.PICK, Action.TAKE):
                 assert done.item not in self.holder, f"{what}, which another robot has"
                 self.holder[done.item] = done.robot
+                self.baskets.pop(done.item, None)
             else:
                 assert self.holder.pop(done.item, None) == done.robot, f"{what}, but it has it not"
                 if done.action is Action.DROP:
@@ -32,4 +35,11 @@ class Ledger:
 
     def failed(self, robot: str) -> None:
         """What a robot had lies where it stands, or is lost."""
+        self.baskets |= {item: who for item, who in self.holder.items() if who == robot}
         self.holder = {item: who for item, who in self.holder.items() if who != robot}
+
+    def back(self, robot: str) -> None:
+        """It has again what nobody has fetched meanwhile."""
+        kept = {item: who for item, who in self.baskets.items() if who == robot}
+        self.holder |= kept
+        self.baskets = {item: who for item, who in self.baskets.items() if item not in kept}

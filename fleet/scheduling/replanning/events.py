@@ -126,9 +126,13 @@ class StopFailed:
 
 @dataclass(frozen=True, slots=True)
 class LetGo:
-    """What a robot has set out for, and does not have aboard, may be done by another one."""
+    """What a robot has set out for, and does not have aboard, may be done by another one.
+
+    `at`: the place that it has come to, and where it stands.
+    """
 
     robot: str
+    at: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -135,14 +135,18 @@ def fail(state: FleetState, number: int, at: int, again_s: float | None) -> list
     return [task.item]
 
 
-def let_go(state: FleetState, number: int) -> list[int]:
-    """Others may do what it has set out for. Raises `EventError` where they cannot."""
+def let_go(state: FleetState, number: int, at: int) -> list[int]:
+    """Others may do what it has set out for; until it has broken that off it stands at a place.
+
+    Raises `EventError` where they cannot.
+    """
     robot = state.robots[number]
     task = _doing(robot)
     if not _is_kept(state, number) or state.items[task.item].robot is not None:
         name, item = robot.robot.name, state.items[task.item].item.name
         raise EventError(f"nobody else can do what robot '{name}' is about with '{item}'")
     state.take_out(task.item)
+    robot.trip, robot.place, robot.free_s = Trip(at, state.now_s, keeps=False), at, state.now_s
     return [task.item]
 
 

@@ -172,6 +172,12 @@ class RunningFleet:
         arrival_s = state.travel.trip(robot.place, place, later_s, speed).arrival_s
         return max(from_s, later_s) if arrival_s <= stop.begin_s + CHECK_S else from_s
 
+    def lasts_s(self, name: str, place: str) -> float:
+        """How long a robot would drive from where it is, or is about to be; inf without a way."""
+        state, robot = self._state, self.robots[name]
+        from_s, there = robot.available_s(state.now_s), state.place_number(place)
+        return state.travel.trip(robot.place, there, from_s, robot.robot.speed).arrival_s - from_s
+
     def passes(self, name: str) -> list[str]:
         """The places that a robot passes from stop to stop, once it is where it is on its way to.
 
@@ -306,7 +312,7 @@ class RunningFleet:
                 place = state.place_number(event.at)
                 selling = observed_stops.fail(state, number, place, event.again_s)
             case LetGo():
-                selling = observed_stops.let_go(state, number)
+                selling = observed_stops.let_go(state, number, state.place_number(event.at))
         return self._replan(selling)
 
     def _set_out(self, number: int) -> Outcome:

@@ -47,6 +47,16 @@ def test_who_comes_from_the_other_side_takes_over() -> None:
     assert (taken[0].requests, taken[0].robots) == (("visit",), ("r0", "r1"))
 
 
+def test_where_it_stands_counts_and_not_where_it_should_have_come_to() -> None:
+    dispatcher, leg = under_way("a", "e")
+    dispatcher.legs_to_begin(40.0)
+    assert dispatcher.take_over(AB, 40.0) == "r1"
+    places = dispatcher.building.graph.places
+    assert places[dispatcher.fleet.robots["r0"].place].name == "f/a"
+    dispatcher.ended(leg, LegEnd(outcome=LegOutcome.WITHDRAWN, at="a"), 41.0)
+    assert make_leg(dispatcher, 41.0, 40.0).robot == "r1"
+
+
 def test_the_way_counts_as_open_again_soon() -> None:
     dispatcher, _ = under_way("a", "e")
     dispatcher.take_over(AB, 5.0)

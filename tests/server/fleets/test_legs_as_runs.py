@@ -61,6 +61,7 @@ class FakeSite:
         self.stands_still = False
         self.asks_after_s = 0.0
         self.failed: list[str] = []
+        self.batteries: dict[str, float] = {}
         self.taken: Mapping[str, list[str]] = {}
 
     def odometer(self, robot: str) -> Odometer | None:
@@ -76,6 +77,9 @@ class FakeSite:
 
     def note_taken(self, taken: Mapping[str, list[str]]) -> None:
         self.taken = taken
+
+    def battery(self, robot: str) -> float | None:
+        return self.batteries.get(robot)
 
     def rests(self, robot: str) -> bool:
         return robot not in self.busy | self.gone

@@ -130,3 +130,15 @@ def test_a_place_without_a_charger_is_told() -> None:
 
     assert told(HERE) == [f"no charger is at '{HERE}', where a robot is to charge"]
     assert told(CHARGER) == []
+
+
+@pytest.mark.parametrize("battery_wh", [20.0, 0.0])
+def test_a_robot_says_what_its_battery_holds_unless_it_never_runs_out(battery_wh: float) -> None:
+    bench = BuildingBench(battery_wh=battery_wh)
+    (robot,) = bench.group.agents
+    assert robot.poses().battery == (1.0 if battery_wh else None)
+    bench.go(ROBOT, HERE)
+    bench.run()
+    share = bench.world.batteries[0].share
+    assert robot.poses().battery == (share if battery_wh else None)
+    assert (share < 1.0) is (battery_wh > 0.0)

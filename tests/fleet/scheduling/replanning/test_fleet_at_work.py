@@ -91,6 +91,8 @@ class FleetAtWork(RuleBasedStateMachine):
         lost = frozenset(aboard[:1]) if loses else frozenset()
         self.happen(RobotFailed(name, lost), 0.0)
         self.ledger.failed(name)
+        for item in lost:
+            del self.ledger.baskets[item]
         for item in aboard:
             state = ItemState.LOST if item in lost else ItemState.LEFT
             assert self.fleet.items[item].state is state
@@ -99,8 +101,11 @@ class FleetAtWork(RuleBasedStateMachine):
     @rule(gap_s=gaps, which=numbers, where=numbers)
     def come_back(self, gap_s: float, which: int, where: int) -> None:
         names = self.robots(work=False)
-        place = self.places[where % len(self.places)]
-        self.happen(RobotBack(names[which % len(names)], place), gap_s)
+        place, name = self.places[where % len(self.places)], names[which % len(names)]
+        self.fleet.advance(self.fleet.now_s + gap_s)
+        self.ledger.follow(self.fleet)
+        self.happen(RobotBack(name, place), 0.0)
+        self.ledger.back(name)
 
     @rule(gap_s=gaps, which=numbers, for_a_while=st.booleans())
     def close(self, gap_s: float, which: int, for_a_while: bool) -> None:

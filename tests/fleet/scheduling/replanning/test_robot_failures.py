@@ -246,8 +246,9 @@ def happen_to(baskets: Baskets, robot: str, act: str, place: str, now_s: float) 
     match act:
         case "set_out" if tracked.works and tracked.doing is None and fleet.stops()[robot]:
             item = fleet.stops()[robot][0].item
-            others = [each for each in fleet.robots.values() if each.doing is not None]
-            if all(list(fleet.items)[each.doing.item] != item for each in others if each.doing):
+            # As a dispatcher does: first whoever is called off has to break off.
+            off = [e.doing for e in fleet.robots.values() if e.doing is not None and not e.held]
+            if all(list(fleet.items)[doing.item] != item for doing in off):
                 fleet.apply(SetOut(robot), now_s)
         case "do":
             baskets.do(robot, now_s)

@@ -1,0 +1,52 @@
+"""What robots find of ways, and what comes of it: a way is closed, or another robot goes."""
+
+from mend.fleet.dispatch.dispatcher import Dispatcher
+from mend.fleet.dispatch.leg import Finding, Found, Leg
+from mend.server.fleets.closed_ways import ClosedWays
+from mend.server.fleets.robot_findings import is_led_round
+
+
+class FoundWays:
+    """Tells one dispatcher what its robots find, each finding once."""
+
+    def __init__(self, dispatcher: Dispatcher, closed: ClosedWays) -> None:
+        self._dispatcher, self._closed = dispatcher, closed
+        self._told: dict[str, tuple[int, Finding, frozenset[str]]] = {}
+        """By robot, what it has last found of which way, and on which leg."""
+
+    def take(self, found: Found, now_s: float) -> bool:
+        """Have the plan follow what a robot has found; whether it does.
+
+        Raises a `RefusalError` for what makes no sense to it.
+        """
+        legs = self._dispatcher.legs_under_way()
+        leg = next((each for each in legs if each.robot == found.by), None)
+        if self._is_told_already(found, leg):
+            return False
+        if self._is_news(found, leg):
+            self._dispatcher.found(found, now_s)
+        elif not self._is_taken_over(found, leg, now_s):
+            return False
+        self._closed.note(found, found.by)
+        return True
+
+    def _is_told_already(self, found: Found, leg: Leg | None) -> bool:
+        """Whether a robot has told others of it before, and asks people about it now."""
+        if leg is None:
+            return False
+        told = (leg.number, found.finding, frozenset(found.between))
+        before, self._told[leg.robot] = self._told.get(leg.robot), told
+        return told == before and found.finding is not Finding.OPEN
+
+    def _is_taken_over(self, found: Found, leg: Leg | None, now_s: float) -> bool:
+        """Whether another robot does a leg on whose way its own does not get on."""
+        if leg is None or found.finding is Finding.OPEN:
+            return False
+        return self._dispatcher.take_over(found, now_s) is not None
+
+    def _is_news(self, found: Found, leg: Leg | None) -> bool:
+        """Whether it is something for all others to go by."""
+        closed, graph = self._dispatcher.closed_until_s(), self._dispatcher.building.graph
+        if found.finding is Finding.OPEN:
+            return frozenset(found.between) in closed
+        return is_led_round(graph, closed, found, found.between[1] if leg is None else leg.place)
