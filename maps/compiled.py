@@ -5,6 +5,11 @@ from typing import Any, TypeVar, cast
 
 import numba
 
+# Numba would import these with the first call of any kernel, and so change a table of types that a
+# first call in another thread may be going through: "dictionary changed size during iteration".
+import numba.core.ccallback
+import numba.experimental.function_type
+
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 
