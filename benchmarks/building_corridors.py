@@ -6,7 +6,8 @@ PLAN: building files (`mend building import` makes them). Whoever has arrived is
 place of one list, drawn by the seed, that no other robot is sent to or stands at; places are all
 of the plan but cabins. Ours drive in the simulated building by their lasers; who is asked something
 does what helps, 2 s later. The peer, in the same run with the same list, is prioritized
-planning (`peers/cooperative_astar.py`): its robots start and stop at once, and are never off.
+planning (`peers/cooperative_astar.py`): its robots start and stop at once, are never off, and try
+again every 5 s where there is no path.
 A robot stands for ever if it has not moved by 0.3 m for 180 s. The exit code is 1 if one does.
 """
 
@@ -45,6 +46,7 @@ from mend.tasks.scene import Place, Pose, Scene
 SLICE_S = 0.5
 THINKS_S = 2.0
 LOOKS_S = 60.0
+TRIES_EVERY_S = 5
 STANDS_M, STANDS_S = 0.3, 180.0
 
 
@@ -170,28 +172,28 @@ class Driving:
 
 
 def planned(building: Building, goals: Goals, starts: dict[str, str], seconds: int) -> Tally:
-    """The peer: whoever has arrived plans at once; who finds no path tries again each second."""
+    """The peer: whoever has arrived plans at once; who finds no path tries again later."""
     began_s, tally = time.process_time(), Tally()
     peer = Planned(building, starts)
     goals.of.update(starts)
-    waits_s = dict.fromkeys(starts, 0)
+    since_s = dict.fromkeys(starts, 0)
+    tries_s = dict.fromkeys(starts, 0)
     wants: dict[str, str] = {}
     for now_s in range(seconds):
         peer.forget_before(now_s)
         for robot in starts:
-            if peer.arrives_s(robot) > now_s:
+            if peer.arrives_s(robot) > now_s or tries_s[robot] > now_s:
                 continue
             if robot not in wants and now_s:
                 tally.arrived += 1
             goal = wants[robot] if robot in wants else goals.next_for(robot)
             if peer.plan(robot, goal, now_s):
                 wants.pop(robot, None)
-                waits_s[robot] = 0
-            else:
-                wants[robot] = goal
-                waits_s[robot] += 1
-                if waits_s[robot] > STANDS_S:
-                    tally.stood.add(robot)
+                since_s[robot] = peer.arrives_s(robot)
+                continue
+            wants[robot], tries_s[robot] = goal, now_s + TRIES_EVERY_S
+            if now_s - since_s[robot] > STANDS_S:
+                tally.stood.add(robot)
     tally.took_s = time.process_time() - began_s
     return tally
 

@@ -20,8 +20,8 @@ Node = tuple[str, ...]
 """A place by its name; or on a lane, its ends and which step from the first one it is."""
 
 STEP_M = 1.0
-_LATEST_S = 600
-"""A path that takes longer is none."""
+_LONGER_S = 60
+"""A path that takes so much longer than the shortest is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,8 @@ class Reservations:
 
     def last_s(self, node: Node, robot: str) -> int:
         """The last second at which somebody else passes a node."""
-        return max((t for (n, t), who in self.at.items() if n == node and who != robot), default=-1)
+        passed = (t for (n, t), who in self.at.items() if n == node and who != robot)
+        return max(passed, default=-1)
 
 
 class Planned:
@@ -139,6 +140,7 @@ class Planned:
         if goal in self._taken.stays and self._taken.stays[goal][0] != robot:
             return None
         left_s = self._to(goal)
+        latest_s = now_s + left_s.get(here, inf) + _LONGER_S
         free_from_s = self._taken.last_s(goal, robot)
         order, numbers = [(now_s + left_s.get(here, inf), 0, here, now_s)], count(1)
         before: dict[tuple[Node, int], tuple[Node, int] | None] = {(here, now_s): None}
@@ -146,7 +148,7 @@ class Planned:
             _, _, node, time_s = heappop(order)
             if node == goal and time_s > free_from_s:
                 return _path_to((node, time_s), before)
-            if time_s - now_s > _LATEST_S:
+            if time_s > latest_s:
                 continue
             for to, at_s in self._next(robot, node, time_s):
                 if (to, at_s) not in before and to in left_s:

@@ -190,7 +190,7 @@ class _Failing:
         """Raises `ConflictError` where no robot brings anything for long."""
         until_s = self._fleet.now_s + _BRINGS_WITHIN_S
         while self._robot is None:
-            self._robot = await self._fleet.read(_who_brings)
+            self._robot = await self._fleet.read(who_brings)
             if self._robot is None:
                 if self._fleet.now_s >= until_s:
                     raise ConflictError("no robot fails: none was on its way with anything")
@@ -202,7 +202,7 @@ class _Failing:
             await self._fleet.put_back(self._robot, local_author())
 
 
-def _who_brings(dispatcher: "Dispatcher") -> str | None:
+def who_brings(dispatcher: "Dispatcher") -> str | None:
     """The robot with the longest way to where it hands something over; None for short ones.
 
     None either for who meets another robot: its failure would undo that.

@@ -62,6 +62,8 @@ class Cabin:
     since_s: float = 0.0
     heading_for: str | None = None
     calls: list[Call] = field(default_factory=list)
+    aboard: Sequence[int] = ()
+    """The robots that stood in it in the last cycle."""
     misdirected: bool = False
     """Who rides next is taken to a wrong floor first."""
 
@@ -87,6 +89,12 @@ class Cabin:
         """Whether one can get in and out there."""
         return self.state is CabinState.OPEN and self.floor == floor
 
+    def is_open_for(self, robot: int, floor: str) -> bool:
+        """Whether a robot may get in there: it is its turn, and nobody else is in it."""
+        call, others = self.call_of(robot), [each for each in self.aboard if each != robot]
+        is_its_turn = call is not None and self.serving(()) is call and not others
+        return is_its_turn and self.is_open_at(floor)
+
     def share_of_way(self, time_s: float) -> float:
         """How much of its way to the next floor it has behind it."""
         if self.state is not CabinState.MOVING:
@@ -101,6 +109,7 @@ class Cabin:
 
     def pass_time(self, time_s: float, inside: Sequence[int], *, door_is_free: bool) -> bool:
         """One cycle; `inside` are the robots that stand in it. True when it has arrived."""
+        self.aboard = inside
         if time_s < self.until_s:
             return False
         if self.state is CabinState.MOVING:

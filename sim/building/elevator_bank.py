@@ -220,7 +220,4 @@ class RobotElevators:
             each.withdraw(self._number)
 
     def is_open_for(self, ride: Ride) -> bool:
-        cabin = self._cabins[ride.elevator]
-        call = cabin.call_of(self._number)
-        served = cabin.serving(())
-        return call is not None and served is call and cabin.is_open_at(ride.from_floor)
+        return self._cabins[ride.elevator].is_open_for(self._number, ride.from_floor)

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from mend.fleet.request_file import read_request_file
 from mend.server.cli.building import app
 from mend.server.cli.failures import CommandLineError
 
@@ -81,3 +82,20 @@ def test_an_elevator_that_is_told_wrongly_is_refused(tmp_path: Path) -> None:
     plan.write_text(json.dumps({"nodes": NODES, "edges": EDGES}), encoding="utf-8")
     with pytest.raises(CommandLineError, match="say NAME=FLOOR:NODE"):
         run("import", plan, "-o", tmp_path / "x.yaml", "--elevator", "lift")
+
+
+def test_a_shift_is_drawn_for_a_scene_and_says_what_cannot_happen_there(tmp_path: Path) -> None:
+    plan, scene = tmp_path / "shop.building.yaml", tmp_path / "scenes" / "shop.yaml"
+    plan.write_text(PLAN, encoding="utf-8")
+    run("import", plan, "-o", tmp_path / "shop.yaml")
+    run("scene", tmp_path / "shop.yaml", "-o", scene)
+    path = tmp_path / "shift.yaml"
+    told = run("shift", scene, "--seed", 4, "-o", path)
+    assert "no wrong floor: no elevator is on the way between any two rooms" in told
+    assert "one robot alone" in told
+    document = read_request_file(path)
+    assert len(document.requests) == 8
+    assert {each for request in document.requests for each in request.places} <= {
+        "L1/till", "L1/store"
+    }  # fmt: skip
+    assert [each.kind for each in document.happenings] == ["nobody_answers", "cancelled"]

@@ -181,3 +181,20 @@ def test_who_is_misdirected_is_taken_elsewhere_first_once(
     call.to = "F3"
     shaft.until_open_at("F3")
     assert shaft.cabin.call_of(7) is None
+
+
+def test_nobody_gets_in_with_who_waits_in_it_for_another_button() -> None:
+    shaft = Shaft(cabin_of())
+    shaft.cabin.misdirected = True
+    shaft.cabin.call(7, "F1", "F3")
+    shaft.cabin.call(8, "F2", "F1")
+    shaft.until_open_at("F1")
+    shaft.inside = [7]
+    shaft.until_open_at("F2")
+    shaft.wait(CABIN_DOOR_S + STEP_S)
+    assert not shaft.cabin.is_open_for(8, "F2")
+    shaft.cabin.calls[0].to = "F3"
+    shaft.until_open_at("F3")
+    shaft.inside = []
+    shaft.until_open_at("F2")
+    assert shaft.cabin.is_open_for(8, "F2")
