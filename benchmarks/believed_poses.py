@@ -16,7 +16,7 @@ class BelievedPoses:
     """Looks at robots again and again, and judges what they believe by where they really are."""
 
     def __init__(self, robots: Sequence[BuildingRobot]) -> None:
-        self._robots = robots
+        self.robots = robots
         self._far_s: Counter[int] = Counter()
         self._lost_since_s: dict[int, float] = {}
         self.lied_to: set[int] = set()
@@ -30,7 +30,7 @@ class BelievedPoses:
 
     def look(self, time_s: float, since_s: float) -> None:
         """As things are now; the look before was `since_s` ago."""
-        for number, robot in enumerate(self._robots):
+        for number, robot in enumerate(self.robots):
             if robot.belief is None:
                 continue
             believed, lost = robot.belief.at, robot.whereabouts.is_lost

@@ -53,7 +53,8 @@ class WatchedDay:
 
     def __init__(self) -> None:
         self.world: BuildingWorld | None = None
-        self.poses: BelievedPoses | None = None
+        self.poses = BelievedPoses([])
+        self.starts = 0
         self._create = BUILDINGS.create_agents
         self._looked_s = 0.0
 
@@ -67,19 +68,19 @@ class WatchedDay:
     def _watched(self, setup: WorldSetup) -> SharedWorld:
         group = self._create(setup)
         assert isinstance(group.world, BuildingWorld), "it is a building"
-        self.world, self.poses = group.world, BelievedPoses(group.world.robots)
+        self.world, self.poses.robots = group.world, group.world.robots
+        self.starts += 1
         self.world.advance_cycle = self._looking(self.world)  # type: ignore[method-assign]
         return group
 
     def _looking(self, world: BuildingWorld) -> Callable[[], None]:
         advance_cycle, poses = world.advance_cycle, self.poses
-        assert poses is not None, "it was made before"
 
         def advance() -> None:
             advance_cycle()
             now_s = world.time_s()
-            if now_s - self._looked_s >= LOOKS_EVERY_S - 1e-9:
-                poses.look(now_s, now_s - self._looked_s)
+            if abs(now_s - self._looked_s) >= LOOKS_EVERY_S - 1e-9:
+                poses.look(now_s, max(0.0, now_s - self._looked_s))
                 self._looked_s = now_s
 
         return advance
@@ -136,18 +137,18 @@ def _day(seed: int, options: argparse.Namespace, log: Any) -> bool:
     took_s = time.process_time() - began_s
     world, poses = day.world, day.poses
     assert world is not None, "it was opened"
-    assert poses is not None, "it was opened"
     ended, lost_s = Counter(shift.ended.values()), poses.lost_s or [0.0]
     silent = poses.silent["silent"]
     print(
         f"seed {seed}: {len(shift.ended)} asked, {_told(ended)}{poses.told}; "
         f"{silent} times silent, {poses.silent_s:.1f} s in all; lost {len(poses.lost_s)} times, "
         f"{np.median(lost_s):.1f} s (p50), {max(lost_s):.1f} s (max), {poses.still_lost} for good; "
-        f"{world.touches} touches; {world.time_s() / 3600.0:.1f} h, "
-        f"{world.time_s() / took_s:.0f} x real time",
+        f"{world.touches} touches; its world died {day.starts - 1} times; "
+        f"{world.time_s() / 3600.0:.1f} h, {world.time_s() / took_s:.0f} x real time",
         flush=True,
     )
-    return set(ended) <= {"done"} and not (silent or world.touches or poses.still_lost)
+    well = set(ended) <= {"done"} and day.starts == 1
+    return well and not (silent or world.touches or poses.still_lost)
 
 
 def _told(counts: Counter[str]) -> str:

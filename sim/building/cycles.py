@@ -23,4 +23,6 @@ class Cycles:
 
     def before(self, time_s: float) -> int:
         """How many more cycles end before a time; 0 where the next one reaches it."""
+        if time_s <= self.time_s():
+            return 0
         return max(0, math.ceil((time_s - _EPSILON_S) / PERIOD_S) - 1 - self.passed)

@@ -1,7 +1,9 @@
 """Cycles in which nothing happens pass at once, and leave what they would have left one by one."""
 
+import math
 from typing import Any
 
+import numpy as np
 import pytest
 from building_bench import BuildingBench, made_up
 from hypothesis import given, settings
@@ -71,6 +73,17 @@ def test_nothing_is_leapt_over_that_a_robot_does() -> None:
     assert bench.cycles * 0.05 == pytest.approx(bench.group.time_s())
 
 
+def test_nothing_is_leapt_over_while_a_robot_that_does_nothing_is_lost() -> None:
+    bench = Counted(leaps=True, localizer="enml", unmapped=0.3)
+    bench.hold_until(5.0)
+    robot = bench.world.robots[0]
+    assert robot.belief is not None
+    before, at = bench.cycles, np.array([robot.at.x, robot.at.y, robot.at.yaw])
+    robot.belief.whereabouts.start_anew(at, np.array(robot.odometer.pose), lost=True)
+    bench.hold_until(5.5)
+    assert bench.cycles - before == 10
+
+
 @given(st.integers(0, 10**7), st.floats(0.0, 1e6))
 @settings(max_examples=200)
 def test_a_leap_ends_one_cycle_before_what_happens(passed: int, ahead_s: float) -> None:
@@ -79,5 +92,6 @@ def test_a_leap_ends_one_cycle_before_what_happens(passed: int, ahead_s: float) 
     due_s = cycles.time_s() + ahead_s
     cycles.passed += cycles.before(due_s)
     assert cycles.time_s() < due_s or cycles.passed == passed
+    assert cycles.before(-math.inf) == 0
     cycles.passed += 1
     assert cycles.time_s() >= due_s - 1e-9
