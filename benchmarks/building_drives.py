@@ -28,6 +28,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 
+from believed_poses import BelievedPoses
 from building_bench import BuildingBench, made_up
 
 from mend.maps.building.building_file import read_building_file
@@ -51,8 +52,6 @@ STEPS_IN_EVERY_S = 20.0
 THINKS_S = 2.0
 LOOKS_S = 60.0
 SLICE_S = 0.25
-FAR_M = 2.0
-FAR_S = 2.0
 NEAR_M = 1.0
 """So much farther than to the nearest place people still call it near."""
 AT_M = 4.0
@@ -77,11 +76,9 @@ class Drives:
         self._held: dict[str, str] = {}
         self._asked_s: dict[str, float] = {}
         self._guesses: dict[str, list[str]] = {}
-        self._lied: set[str] = set()
-        self._far_s: Counter[str] = Counter()
         self._read = 0
         self.counts: Counter[str] = Counter()
-        self.off_m: list[float] = []
+        self.poses = BelievedPoses(self._bench.world.robots)
 
     @property
     def touches(self) -> int:
@@ -98,33 +95,17 @@ class Drives:
                 steps_in_s += self._rng.uniform(0.5, 1.5) * STEPS_IN_EVERY_S
                 if self._bench.world.intervene(Intervention(act=Act.BLOCK)) == "":
                     self.counts["steps in the way"] += 1
-            self._judge()
+            self.poses.look(group.time_s(), SLICE_S)
             self._hear()
             self._answer()
         self.counts["carried"] = self._bench.world.carried
+        self.counts += self.poses.silent
 
     def _send_on(self, robot: str) -> None:
         """To any place of the building."""
         goals = sorted(self._bench.scene.places)
         self.counts["drives"] += 1
         self._bench.go(robot, goals[int(self._rng.integers(len(goals)))])
-
-    def _judge(self) -> None:
-        """How far off they are from the truth that say that they know where they are."""
-        for name, robot in zip(self._bench.scene.robots, self._bench.world.robots, strict=True):
-            if robot.belief is None:
-                continue
-            believed, lost = robot.belief.at, robot.whereabouts.is_lost
-            off_m = math.hypot(believed.x - robot.at.x, believed.y - robot.at.y)
-            if not lost:
-                self.off_m.append(off_m)
-            before_s = self._far_s[name]
-            self._far_s[name] = before_s + SLICE_S if off_m > FAR_M and not lost else 0.0
-            if before_s < FAR_S <= self._far_s[name]:
-                lied = " after a lie" if name in self._lied else ""
-                self.counts[f"silent{lied}"] += 1
-            if off_m < FAR_M:
-                self._lied.discard(name)
 
     def _hear(self) -> None:
         """What the robots reported since."""
@@ -175,7 +156,7 @@ class Drives:
             if self._is_true(robot, guess) != lies:
                 if lies:
                     self.counts["lies"] += 1
-                    self._lied.add(robot)
+                    self.poses.lied_to.add(list(self._bench.scene.robots).index(robot))
                 self.counts["told"] += 1
                 self._bench.send(robot, Look(expect="located", guess=guess, within_s=LOOKS_S))
                 return
@@ -227,33 +208,26 @@ def main() -> int:
         for seed in range(arguments.first, arguments.first + arguments.buildings)
     ]
     total: Counter[str] = Counter()
-    touches, off_m = 0, list[float]()
+    touches, poses = 0, BelievedPoses([])
     for number, (name, scene) in enumerate(scenes):
         began_s = time.process_time()
         drives = Drives(scene, arguments.first + number, arguments)
         drives.run(arguments.seconds)
         pace = arguments.seconds / (time.process_time() - began_s)
         print(
-            f"{name}: {drives.touches} touches, {_told(drives.counts)}{_off(drives.off_m)}; "
+            f"{name}: {drives.touches} touches, {_told(drives.counts)}{drives.poses.told}; "
             f"{pace:.1f} x real time",
             flush=True,
         )
-        off_m += drives.off_m
+        poses.off_m += drives.poses.off_m
         total += drives.counts
         touches += drives.touches
-    print(f"all {len(scenes)}: {touches} touches, {_told(total)}{_off(off_m)}")
+    print(f"all {len(scenes)}: {touches} touches, {_told(total)}{poses.told}")
     return 1 if touches else 0
 
 
 def _told(counts: Counter[str]) -> str:
     return ", ".join(f"{count} {what}" for what, count in sorted(counts.items()))
-
-
-def _off(off_m: list[float]) -> str:
-    if not off_m:
-        return ""
-    p50, p95, most = np.percentile(off_m, [50, 95, 100])
-    return f"; off {p50:.3f} m (p50), {p95:.3f} m (p95), {most:.2f} m (max)"
 
 
 if __name__ == "__main__":

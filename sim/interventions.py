@@ -1,5 +1,6 @@
 """Which interventions are still to come in a run, and when each is due."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -59,6 +60,16 @@ class PendingInterventions:
     def any_left(self) -> bool:
         """Whether anything is still to come."""
         return bool(self._queued) or len(self._fired) < len(self._scripted)
+
+    @property
+    def due_s(self) -> float:
+        """When the next one is due by the clock; infinite where none is."""
+        scripted = (
+            each.at_s or 0.0
+            for index, each in enumerate(self._scripted)
+            if index not in self._fired and each.when is None
+        )
+        return min((*scripted, *(each.at_s for each in self._queued)), default=math.inf)
 
     def queue(self, robot: str, command_id: str, command: Intervene, at_s: float) -> None:
         """Let somebody do something when the clock reaches `at_s`, as a robot was told.

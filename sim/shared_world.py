@@ -84,7 +84,7 @@ class SharedWorld:
                 break
             if not self._busy or self.time_s() >= end_s - _EPSILON_S:
                 break
-            self._let_cycle_pass()
+            self._let_cycle_pass(end_s)
         return self._busy
 
     @property
@@ -95,8 +95,11 @@ class SharedWorld:
         if self._surroundings.somebody_waits:
             self._surroundings.let_people_act([each.note_progress() for each in self._agents])
 
-    def _let_cycle_pass(self) -> None:
-        """One control cycle at most, so that people act in the very cycle that is theirs."""
+    def _let_cycle_pass(self, end_s: float) -> None:
+        """One control cycle at most, so that people act in the very cycle that is theirs.
+
+        Those before it in which nothing happens at all, because robots only wait, pass at once.
+        """
         for robot in self._robots:
             robot.begin_slice()
             robot.decide()
@@ -104,6 +107,8 @@ class SharedWorld:
         active = any(each.active for each in self._robots)
         if self._surroundings.told_at_once or not (waits or active):
             return
+        if not active:
+            self._surroundings.leap(min(end_s, *(each.holds_until_s for each in self._agents)))
         self._surroundings.world.advance_cycle()
         for robot in self._robots:
             robot.end_cycle()

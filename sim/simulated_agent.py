@@ -1,5 +1,6 @@
 """The agent core of one robot in a simulated world."""
 
+import math
 from typing import Any
 
 from mend.robots.agent import Emit, EmitPicture
@@ -88,6 +89,11 @@ class SimulatedAgent:
     def holds(self) -> bool:
         """Whether it lets time pass and does nothing meanwhile."""
         return self._hold is not None
+
+    @property
+    def holds_until_s(self) -> float:
+        """When its hold is over; infinite where it holds nothing."""
+        return math.inf if self._hold is None else self._hold[1].until
 
     @property
     def busy(self) -> bool:

@@ -9,7 +9,7 @@ from mend.robots.link.messages import Intervene, Intervened, ShownObject, ShownP
 from mend.robots.robot import Robot
 from mend.robots.task_progress import TaskProgress
 from mend.sim.interventions import HELPER, PendingInterventions, PendingSnapshot, PersonAction
-from mend.sim.world import ShownWorld, World
+from mend.sim.world import LeapingWorld, ShownWorld, World
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.scenario import ScriptedIntervention
 
@@ -45,6 +45,7 @@ class Surroundings:
         self.shut_down = False
         self._robots = robots
         self._shown = world if isinstance(world, ShownWorld) else None
+        self._leaping = world if isinstance(world, LeapingWorld) else None
         self._pending = PendingInterventions(interventions)
         self._attempts: dict[str, int] = {}
         self._earlier_attempts: dict[str, int] = {}
@@ -52,6 +53,11 @@ class Surroundings:
     def time_s(self) -> float:
         """The world's clock."""
         return self.world.time_s()
+
+    def leap(self, until_s: float) -> None:
+        """Skip cycles, that end before a time, in which neither the world nor anybody acts."""
+        if self._leaping is not None:
+            self._leaping.leap(min(until_s, self._pending.due_s))
 
     def snapshot(self) -> dict[str, Any]:
         """The state from which robots in the same scene can be rebuilt; JSON-compatible."""

@@ -74,6 +74,19 @@ class World(Protocol):
 
 
 @runtime_checkable
+class LeapingWorld(Protocol):
+    """A world that knows of cycles in which nothing happens before they come."""
+
+    def leap(self, until_s: float) -> None:
+        """Let cycles that end before a time pass at once, as far as nothing happens in them.
+
+        Called while no robot does anything, before a cycle; everything is then as if these had
+        passed one by one.
+        """
+        ...
+
+
+@runtime_checkable
 class ShownWorld(Protocol):
     """A world that shows people where everything really is; no robot may ask for that."""
 

@@ -20,12 +20,13 @@ def distances_m(points: Matrix, segments: Matrix) -> Matrix:
 
 def apart_m(points: Matrix, segments: Matrix) -> Matrix:
     """How far each point (n, 2) is from each segment (m, 4), as (n, m)."""
-    start, along = segments[:, :2], segments[:, 2:] - segments[:, :2]
-    offset = points[:, None] - start
-    lengths = np.maximum((along**2).sum(axis=1), 1e-12)
-    share = np.clip((offset * along).sum(axis=2) / lengths, 0.0, 1.0)
-    away = offset - share[..., None] * along
-    return np.asarray(np.hypot(away[..., 0], away[..., 1]))
+    # One array for each coordinate: sums over a last axis of two take several times as long.
+    x0, y0, x1, y1 = segments.T
+    along_x, along_y = x1 - x0, y1 - y0
+    lengths = np.maximum(along_x**2 + along_y**2, 1e-12)
+    off_x, off_y = points[:, :1] - x0, points[:, 1:] - y0
+    share = np.minimum(np.maximum((off_x * along_x + off_y * along_y) / lengths, 0.0), 1.0)
+    return np.asarray(np.hypot(off_x - share * along_x, off_y - share * along_y))
 
 
 def clearance_m(start: Point, end: Point, segments: Matrix) -> float:

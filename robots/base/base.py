@@ -107,7 +107,8 @@ class Base(Effector[BaseBody]):
         if self.whereabouts.is_lost or waits:
             self.body.stop()
             return
-        self.body.move(self._following.choose(here, now, seen, self.pace))
+        scanned_s = self.body.scan().time
+        self.body.move(self._following.choose(here, now, seen, self.pace, scanned_s))
         if self._following.barred and self.slow:
             self._way.stood(self.body.control_period_s)
 

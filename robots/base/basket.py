@@ -32,12 +32,6 @@ class BasketMemory:
         self.expected_kg = load_kg
         self.handed_over.pop(item, None)
 
-    def note_passed_on(self, item: str) -> None:
-        """Who took something out for another robot says so; what it offers it feels go itself."""
-        if self.offered is None or self.offered[0] != item:
-            weight_kg = self.items.pop(item, 0.0)
-            self.expected_kg = (self.expected_kg or 0.0) - weight_kg
-
     def note_taken(self, item: str, place: str, load_kg: float) -> None:
         """Something was taken out at a place, and the load cell now shows this."""
         self.items.pop(item, None)

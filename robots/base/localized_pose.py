@@ -87,13 +87,19 @@ class LocalizedPose:
         if self.is_lost and self._lost_since_s == _NOT_YET_S:
             self._get_lost()
         self._newest = _as_scan(scan)
-        moved = relative(self._from, odometry)
-        far = math.hypot(moved[0], moved[1]) >= _EVERY_M or abs(moved[2]) >= _EVERY_RAD
-        if far or self.is_lost or scan.time >= self._updated_s + _EVERY_S:
+        if scan.time >= self.due_s(odometry):
+            moved = relative(self._from, odometry)
+            far = _is_far(moved)
             if scan.time >= self._searches_s and not far:
                 self._localizer.search_next()
                 self._searches_s = scan.time + _SEARCHES_EVERY_S
             self._update(moved, odometry)
+
+    def due_s(self, odometry: Poses) -> float:
+        """When it needs a scan, if its wheels are there; any before that only passes the time."""
+        if self.is_lost or _is_far(relative(self._from, odometry)):
+            return -math.inf
+        return self._updated_s + _EVERY_S
 
     def believe(self, guess: str) -> bool:
         """Take the likeliest place of that name, if what it sees agrees with it.
@@ -138,6 +144,10 @@ class LocalizedPose:
     def _get_lost(self) -> None:
         self._lost_since_s = self._time_s
         self._searches_s = self._time_s + _SEARCHES_AFTER_S
+
+
+def _is_far(moved: Poses) -> bool:
+    return math.hypot(moved[0], moved[1]) >= _EVERY_M or abs(float(moved[2])) >= _EVERY_RAD
 
 
 def _is_elsewhere(a: Poses, b: Poses) -> bool:

@@ -81,6 +81,11 @@ class Shift:
         self._to_come = len(document.requests)
         self._over = asyncio.Event()
 
+    @property
+    def ended(self) -> Mapping[str, str]:
+        """What became of each request that is over, by its name."""
+        return self._told.ended
+
     async def carry_out(self, settings: Settings) -> int:
         """Run it to its end and return the exit code: 0 where everything was done."""
         from mend.server.composition import open_service

@@ -72,6 +72,10 @@ class Belief:
         """Take a scan that was made just now."""
         self.whereabouts.note(self._wheels, scan)
 
+    def needs_scan_s(self) -> float:
+        """When it needs the next scan, unless it drives; in the past where it needs one now."""
+        return self.whereabouts.due_s(self._wheels)
+
     def enter(self, floor: str, shift: tuple[float, float] = (0.0, 0.0)) -> None:
         """From now on it is on another floor, so much shifted (metres), or on the same one."""
         if floor == self._floor and shift == (0.0, 0.0):

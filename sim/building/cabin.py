@@ -1,6 +1,6 @@
 """The cabin of an elevator: it comes to whoever's turn it is, and takes along who is in it."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -128,6 +128,16 @@ class Cabin:
             self._open(time_s)
         return False
 
+    def state_now(self) -> Hashable:
+        """All that it does, for comparison."""
+        calls = tuple((e.robot, e.begin, e.wants, e.to, e.stay_open) for e in self.calls)
+        rest = self.since_s, self.heading_for, tuple(self.aboard), self.misdirected
+        return self.floor, self.state, self.until_s, calls, *rest
+
+    def changes_s(self) -> tuple[float, float]:
+        """The times at which it may do something although nobody moves."""
+        return self.until_s, self.since_s + HELD_S
+
     # --- Within -------------------------------------------------------------------------------
 
     def _hold_open(
@@ -145,7 +155,7 @@ class Cabin:
                 self._take_leave(inside)
                 return
         elif served.begin == self.floor:
-            if time_s - self.since_s < HELD_S:
+            if time_s < self.since_s + HELD_S:
                 return
             self.withdraw(served.robot)
         if door_is_free:

@@ -1,11 +1,17 @@
 """Somebody who now and then carries a robot elsewhere: its wheels do not measure that."""
 
 import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from mend.maps.building.building import Floor
+from mend.maps.building.building import Building, Floor
+from mend.sim.building.building_robot import BuildingRobot
 from mend.sim.building.floor_pose import FloorPose
+
+_TRIES_TO_PUT_DOWN = 20
+_SPARE_M = 0.3
+"""So much room is left all round where a robot is put down."""
 
 
 class Carrying:
@@ -24,11 +30,25 @@ class Carrying:
         self.due_s += self._every_s * float(self._rng.uniform(0.5, 1.5))
         return True
 
-    def choose(self, count: int) -> int:
-        """One of so many robots."""
-        return int(self._rng.integers(count))
+    def carry_one(
+        self,
+        robots: Sequence[BuildingRobot],
+        building: Building,
+        touches: Callable[[FloorPose, float, BuildingRobot], bool],
+    ) -> bool:
+        """Lift a robot that drives, and put it down elsewhere, if there is room."""
+        driving = [e for e in robots if e.moving and e.at.floor in building.floors]
+        if not driving:
+            return False
+        robot = driving[int(self._rng.integers(len(driving)))]
+        for _ in range(_TRIES_TO_PUT_DOWN):
+            to = self._draw(robot.at.floor, building.floors[robot.at.floor])
+            if not touches(to, robot.radius_m + _SPARE_M, robot):
+                robot.stand(to)
+                return True
+        return False
 
-    def draw(self, name: str, floor: Floor) -> FloorPose:
+    def _draw(self, name: str, floor: Floor) -> FloorPose:
         """At some place of a floor, turned somehow."""
         places = list(floor.places.values())
         place = places[int(self._rng.integers(len(places)))]

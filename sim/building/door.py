@@ -1,6 +1,6 @@
 """A door of the world: open or shut, by itself or by people."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,6 +46,14 @@ class WorldDoor:
         if self.is_locked:
             return False
         return not spans or any(opens <= time_s < shuts for opens, shuts in spans)
+
+    def changes_s(self) -> Iterator[float]:
+        """The times at which it may open or shut although nobody moves."""
+        if not self.is_shut and self.shuts_s is not None:
+            yield self.shuts_s
+        for opens_s, shuts_s in self.plan.open_s:
+            yield opens_s
+            yield shuts_s
 
     @property
     def heeds_who_comes(self) -> bool:

@@ -12,6 +12,7 @@ from mend.sim.building.door import NOTICES_M, WorldDoor
 
 Matrix = NDArray[np.float64]
 Circle = tuple[float, float, float]
+Point = tuple[float, float]
 
 
 class WorldDoors(Mapping[str, WorldDoor]):
@@ -30,6 +31,7 @@ class WorldDoors(Mapping[str, WorldDoor]):
             floor: np.array([each.segment for each in doors], np.float64).reshape(-1, 4)
             for floor, doors in self._on.items()
         }
+        self._noticed: dict[str, tuple[tuple[Point, ...], list[bool]]] = {}
         self._by_name = {each.name: each for doors in self._on.values() for each in doors}
 
     def __getitem__(self, name: str) -> WorldDoor:
@@ -44,15 +46,30 @@ class WorldDoors(Mapping[str, WorldDoor]):
     def let_pass(self, time_s: float, circles: Callable[[str], Sequence[Circle]]) -> None:
         """One cycle: they open for who comes, and fall shut behind them."""
         for floor, doors in self._on.items():
-            heed = [number for number, each in enumerate(doors) if each.heeds_who_comes]
-            if not heed:
-                continue
-            near_m = np.full(len(heed), math.inf)
-            if there := circles(floor):
-                points = np.array([(x, y) for x, y, _ in there])
-                near_m = apart_m(points, self._segments[floor][heed]).min(axis=0)
-            for number, away_m in zip(heed, near_m, strict=True):
-                doors[number].let_pass(time_s, somebody=bool(away_m < NOTICES_M))
+            near = self._near(floor, circles(floor))
+            for each, somebody in zip(doors, near, strict=True):
+                if each.heeds_who_comes:
+                    each.let_pass(time_s, somebody=somebody)
+
+    def changes_s(self, time_s: float) -> float:
+        """When the next one may open or shut by the clock alone; infinite if none does."""
+        times_s = (
+            at_s for doors in self._on.values() for each in doors for at_s in each.changes_s()
+        )
+        return min((each for each in times_s if each > time_s), default=math.inf)
+
+    def _near(self, floor: str, there: Sequence[Circle]) -> list[bool]:
+        """Before which doors of a floor somebody is; computed anew once they have moved."""
+        before, near = self._noticed.get(floor, ((), []))
+        now = tuple((x, y) for x, y, _ in there)
+        if before != now or not near:
+            segments = self._segments[floor]
+            away_m = np.full(len(segments), math.inf)
+            if now:
+                away_m = apart_m(np.array(now), segments).min(axis=0)
+            near = (away_m < NOTICES_M).tolist()
+            self._noticed[floor] = now, near
+        return near
 
     def shut(self, floor: str) -> Matrix:
         """The lines (n, 4) between the posts of those that are shut on a floor."""

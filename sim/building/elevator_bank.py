@@ -1,7 +1,7 @@
 """The elevators of a building: where their cabins are, and who is in them."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -63,6 +63,11 @@ class ElevatorBank:
             name: Cabin(name, plan, order, min(plan.stops, key=order.index))
             for name, plan in building.document.elevators.items()
         }
+        self._walls = {
+            (name, floor): cabin_walls(stop_of(building, name, floor))
+            for name, each in self.cabins.items()
+            for floor in each.plan.stops
+        }
         self._stops = {
             name: {floor: stop_of(building, name, floor) for floor in each.plan.stops}
             for name, each in self.cabins.items()
@@ -89,7 +94,7 @@ class ElevatorBank:
     def walls(self, floor: str) -> Matrix:
         """The walls of cabins on a floor (n, 4); an open one has none."""
         rows = [
-            cabin_walls(stops[cabin.floor if floor == self.room(name) else floor])
+            self._walls[name, cabin.floor if floor == self.room(name) else floor]
             for name, cabin in self.cabins.items()
             if (stops := self._stops[name])
             and (floor == self.room(name) or (floor in stops and not cabin.is_open_at(floor)))
@@ -131,6 +136,15 @@ class ElevatorBank:
             stops = self._stops[cabin.name]
             (x0, y0), (x1, y1) = stops[before], stops[cabin.floor]
             rider.get_out_at(cabin.floor, (x1 - x0, y1 - y0))
+
+    def state(self) -> Hashable:
+        """All that cabins do, for comparison."""
+        return tuple(each.state_now() for each in self.cabins.values())
+
+    def changes_s(self, time_s: float) -> float:
+        """When the next cabin may do something by the clock alone; infinite if none does."""
+        times_s = (at_s for each in self.cabins.values() for at_s in each.changes_s())
+        return min((each for each in times_s if each > time_s), default=math.inf)
 
     def stop_around(self, rider: Rider) -> Point | None:
         """The middle of the cabin that somebody is in; None for who is in none."""

@@ -107,9 +107,9 @@ class Room:
     def fits(self, piece: Piece, others: Iterable[Piece]) -> bool:
         """Whether a piece may stand there among others."""
         samples = piece.samples
-        if distances_m(samples, self._walls).min() < _OFF_WALL_M - 1e-3:
+        if not _is_off(self._walls, samples, _OFF_WALL_M - 1e-3):
             return False
-        if distances_m(samples, self._clear).min() < self._clear_m + _SAMPLE_M / 2.0:
+        if not _is_off(self._clear, samples, self._clear_m + _SAMPLE_M / 2.0):
             return False
         sides = sides_of(each for each in others if _near(each, piece))
         return bool(distances_m(samples, sides).min() > _APART_M)
@@ -231,6 +231,14 @@ def _looks_from(ways: Matrix) -> list[Point]:
         points += [(x0 + share * (x1 - x0), y0 + share * (y1 - y0)) for share in shares.tolist()]
     step = max(1, math.ceil(len(points) / _MOST_LOOKS))
     return points[::step]
+
+
+def _is_off(segments: Matrix, points: Matrix, by_m: float) -> bool:
+    """Whether none of the points is nearer to any of the segments."""
+    low, high = points.min(axis=0) - by_m, points.max(axis=0) + by_m
+    ends = segments.reshape(-1, 2, 2)
+    beside = (ends.max(axis=1) < low).any(axis=1) | (ends.min(axis=1) > high).any(axis=1)
+    return bool(distances_m(points, segments[~beside]).min() >= by_m)
 
 
 def _near(a: Piece, b: Piece) -> bool:

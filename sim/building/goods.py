@@ -77,8 +77,6 @@ class Goods:
         self.seed = seed
         self.forgetful = forgetful
         self._rng = rng
-        self.passed_on: Callable[[int, str], None] = lambda _robot, _item: None
-        """Called when somebody takes something out of the basket of a robot for another one."""
         self.items: dict[str, Item] = {}
         self.wishes: dict[int, Wish] = {}
 
@@ -146,8 +144,6 @@ class Goods:
         if item.place != wish.place and not from_other:
             return f"nobody at '{wish.place}' has '{wish.item}': it is {self._told(item)}"
         item.put_in(robot)
-        if from_other and other is not None:
-            self.passed_on(other, wish.item)
         return ""
 
     def take_out(self, name: str | None, stands_at: Callable[[int, str | None], bool]) -> str:

@@ -1,7 +1,7 @@
 """People whom robots escort: they wait where they are met, follow, and now and then dawdle."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
@@ -191,6 +191,20 @@ class Guests:
             return _ride_alone(guest, near, around)
         return ""
 
+    # --- Whether they do anything ---------------------------------------------------------------
+
+    def state(self) -> Hashable:
+        """All that they do, for comparison."""
+        return tuple(
+            (n, e.where, e.velocity, e.led, len(e.trail), e.comes_s, e.paused_until_s, e.thinks_s)
+            for n, e in self.of_robots.items()
+        )
+
+    def changes_s(self, time_s: float) -> float:
+        """When the next one may do something by the clock alone; infinite if none does."""
+        times_s = (at_s for each in self.of_robots.values() for at_s in _times_s(each))
+        return min((each for each in times_s if each > time_s), default=math.inf)
+
     # --- What they do ---------------------------------------------------------------------------
 
     def walk(self, time_s: float, robots: Sequence[BuildingRobot], around: Surroundings) -> None:
@@ -341,8 +355,18 @@ def _between(limits: tuple[float, float], share: float) -> float:
     return float(low + share * (high - low))
 
 
+def _times_s(guest: Guest) -> Iterator[float]:
+    """When a guest comes, thinks, walks on or goes."""
+    yield guest.paused_until_s
+    yield guest.thinks_s
+    if guest.comes_s is not None:
+        yield guest.comes_s
+    if guest.left_s is not None:
+        yield guest.left_s + _LEAVES_S
+
+
 def _has_gone(guest: Guest, time_s: float) -> bool:
-    return guest.left_s is not None and time_s - guest.left_s > _LEAVES_S
+    return guest.left_s is not None and time_s >= guest.left_s + _LEAVES_S
 
 
 def _is_at(at: FloorPose, place: FloorPose) -> bool:

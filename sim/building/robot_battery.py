@@ -52,6 +52,14 @@ class RobotBattery:
         energy_j = self._energy_j + gained_w * period_s - DRIVE_J_PER_M * driven_m
         self._energy_j = min(max(energy_j, 0.0), self._capacity_j)
 
+    def stand(self, period_s: float, times: int) -> None:
+        """Some periods have passed, one by one, without driving."""
+        for _ in range(0 if self.endless else times):
+            before_j = self._energy_j
+            self.pass_time(period_s, 0.0)
+            if self._energy_j == before_j:
+                return
+
     def snapshot(self) -> BatterySnapshot:
         """What it is rebuilt from."""
         return BatterySnapshot(energy_j=self._energy_j, plugged=self.plugged)

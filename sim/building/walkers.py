@@ -115,6 +115,10 @@ class Walkers:
             ]
             self._step(each, time_s, np.array(around, np.float64).reshape(-1, 3), walls[floor])
 
+    def changes_s(self, time_s: float) -> float:
+        """Until when all of them sit; `time_s` where somebody walks."""
+        return min((time_s if each.way else each.until_s for each in self.people), default=math.inf)
+
     def _sets_out(self, who: Walker, time_s: float) -> bool:
         if time_s < who.until_s:
             return False

@@ -137,7 +137,7 @@ class Drive:
 
     def choose(self, scan: RangeScan) -> Velocity:
         seen = self._surroundings.take(scan, self.at, self.time_s)
-        return self._follower.choose(self.at, self.now, seen, self._speed)
+        return self._follower.choose(self.at, self.now, seen, self._speed, scan.time)
 
     def step(self) -> str | None:
         """One cycle; how it ended, if it did."""

@@ -15,4 +15,4 @@ def warm_up() -> None:
     limits = DriveLimits(1.0, 1.0, 1.0, 1.0, sideways=True)
     start = BasePose(0.0, 0.0, 0.0)
     follower = WayFollower(limits, 0.3, 0.1, [(0.0, 0.0), (2.0, 0.0)], BasePose(2.0, 0.0, 0.0))
-    follower.choose(start, STANDING, Seen.still(np.array([[1.0, 0.0], [1.0, 1.0]])), 1.0)
+    follower.choose(start, STANDING, Seen.still(np.array([[1.0, 0.0], [1.0, 1.0]])), 1.0, 0.0)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,16 @@ FACES_GOAL_M = 1.0
 _STANDS_M_S = 0.01
 
 
+@dataclass(frozen=True, slots=True)
+class _Steered:
+    """What it steers for since a scan: `carrot`, with so much left, so far along its way then."""
+
+    scanned_s: float
+    carrot: tuple[float, float]
+    left_m: float
+    along_m: float
+
+
 class WayFollower:
     """Follows one way of a base to its end, and turns there as its goal says."""
 
@@ -58,6 +69,7 @@ class WayFollower:
         self._unspent_m = 0.0
         self._at_end = False
         self._kept = NO_WAY
+        self._steered: _Steered | None = None
         self.length_m = self._way.length_m
         self.left_m = self.length_m
         """What is left of it: the way to the farthest point that can be got to, and on from there
@@ -65,10 +77,15 @@ class WayFollower:
         self.barred = False
         """Whether what is seen leaves no way on."""
 
-    def choose(self, here: BasePose, now: Velocity, seen: Seen, speed: float) -> Velocity:
-        """The velocity of the next cycle; what is seen is in the way's frame."""
+    def choose(
+        self, here: BasePose, now: Velocity, seen: Seen, speed: float, scanned_s: float
+    ) -> Velocity:
+        """The velocity of the next cycle; what is seen is in the way's frame.
+
+        `scanned_s`: when the newest scan was made. Until the next one a way that leads on is kept.
+        """
         self._advance(here)
-        steering = self._steering(here, now, seen.points)
+        steering = self._steering(here, now, seen.points, scanned_s)
         return self._window.choose(now, steering, seen.in_frame_of(here), speed)
 
     def gets_on(self, here: BasePose, points: Points, by_m: float = _GETS_ON_M) -> bool:
@@ -138,25 +155,38 @@ class WayFollower:
         ahead = ahead_m[route.reached]
         return bool(ahead >= self.length_m - 1e-9 or ahead - self._along_m > by_m)
 
-    def _steering(self, here: BasePose, now: Velocity, points: Points) -> Steering:
+    def _steering(
+        self, here: BasePose, now: Velocity, points: Points, scanned_s: float
+    ) -> Steering:
         off_m = math.dist((here.x, here.y), self._way.end)
         self._at_end = off_m <= (_STILL_THERE_M if self._at_end else _THERE_M)
         turn_rad = math.remainder(self.goal.yaw - here.yaw, math.tau)
         if self._at_end:
-            self.left_m, self.barred = off_m, False
+            self.left_m, self.barred, self._steered = off_m, False, None
             return Steering(None, turn_rad)
+        steered = self._steered
+        if steered is None or steered.scanned_s != scanned_s:
+            steered = self._steered = self._found(here, now, points, scanned_s)
+        self.barred = steered is None
+        if steered is None:
+            return Steering(None, 0.0)
+        self.left_m = max(0.0, steered.left_m - (self._along_m - steered.along_m))
+        towards = in_frame_of(np.array([steered.carrot]), here)[0]
+        if off_m > FACES_GOAL_M:
+            turn_rad = math.atan2(towards[1], towards[0])
+        return Steering((float(towards[0]), float(towards[1])), turn_rad)
+
+    def _found(
+        self, here: BasePose, now: Velocity, points: Points, scanned_s: float
+    ) -> _Steered | None:
+        """What to steer for, by what is seen now; None where no way leads on."""
         ahead_m = self._samples_m()
         stood = self.barred and now.speed_m_s < _STANDS_M_S
         by_m = _GETS_ON_M if stood else _STAND_OFF_M
         route = self._route(here, points, ahead_m, by_m)
         self._kept = route.way
         if not self._leads_on(route, ahead_m, by_m):
-            self.barred = True
-            return Steering(None, 0.0)
-        self.barred = False
+            return None
         assert route.reached is not None, "it leads on"
-        self.left_m = route.cost_m + self.length_m - float(ahead_m[route.reached])
-        towards = in_frame_of(np.array([route.carrot]), here)[0]
-        if off_m > FACES_GOAL_M:
-            turn_rad = math.atan2(towards[1], towards[0])
-        return Steering((float(towards[0]), float(towards[1])), turn_rad)
+        left_m = route.cost_m + self.length_m - float(ahead_m[route.reached])
+        return _Steered(scanned_s, route.carrot, left_m, self._along_m)

@@ -220,19 +220,6 @@ def test_a_building_is_rebuilt_with_everything_in_its_basket() -> None:
     assert again.world.goods.items["mail"].robot == 0  # type: ignore[attr-defined]
 
 
-def test_a_robot_does_not_miss_what_people_took_out_for_another_one() -> None:
-    bench = with_mail(BuildingBench(robots=2))
-    bench.go("robot2", "F1-102", "collect_item", item="mail")
-    assert bench.run_until(IssueDetected).issue == "item_not_given"
-    bench.run()
-    assert bench.world.intervene(PUT_IN) == ""
-    assert [each.memory.items for each in bench.world.baskets[:1]] == [{}]
-    before = len(bench.of(IssueDetected))
-    bench.go(ROBOT, THERE)
-    bench.run_until(Finished)
-    assert len(bench.of(IssueDetected)) == before
-
-
 def test_a_robot_misses_what_was_taken_out_for_nobody() -> None:
     bench = with_mail(BuildingBench(robots=2))
     assert bench.world.intervene(Intervention(act=Act.STEAL, object="mail")) == ""

@@ -121,7 +121,7 @@ def test_the_wrong_floor_is_noticed_and_left_by_another_ride() -> None:
     assert noticed.detection is not None
     assert noticed.detection.explanation == "lift1 has opened at F3, and I must get to F2"
     bench.run()
-    bench.world.wrong_floors = 0.0
+    bench.world.interveners.wrong_floors = 0.0
     assert see_through(bench)
     bench.send("robot1", Resume(execution=issue.execution))
     bench.run()
