@@ -73,6 +73,7 @@ class DispatchOrdeal:
         left = [view for view in views if view.status not in OVER]
         assert not left, f"these wait for ever: {left}"
         assert self.dispatcher.legs_under_way() == []
+        self.dispatcher.check()
         return Counter(self._ledger.statuses.values())
 
     def actions(self) -> Counter[str]:
