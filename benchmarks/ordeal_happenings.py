@@ -36,8 +36,16 @@ class SiteHappenings:
     """
 
     def __init__(
-        self, client: MendClient, site: UUID, building: Building, seed: int, busy: int
+        self,
+        client: MendClient,
+        url: str,
+        site: UUID,
+        building: Building,
+        seed: int,
+        busy: int,
     ) -> None:
+        """`url`: where the client's service is; `busy`: so many requests are open at most."""
+        self._url = f"{url}/api/requests?site={site}"
         self._client, self._site, self._chance, self._busy = client, site, Random(seed), busy
         mix = THINGS if seed % 2 else MIX
         self._drawn = DispatchHappenings(building, Random(seed + 1), mix=mix)
@@ -124,10 +132,9 @@ class SiteHappenings:
             {"kind": "make_coffee", "name": "z"},
             [], "words", {"kind": "go_to_room", "name": "w" * 10_000, "place": self._rooms[0]},
         ]  # fmt: skip
-        url = f"{self._client._url}/api/requests?site={self._site}"
         try:
             async with httpx.AsyncClient(timeout=10.0) as http:
-                answer = await http.post(url, json=self._chance.choice(wrong))
+                answer = await http.post(self._url, json=self._chance.choice(wrong))
         except httpx.HTTPError as error:
             raise UnreachableError(str(error)) from error
         assert 400 <= answer.status_code < 500, f"{answer.status_code} for what is wrong"

@@ -173,7 +173,12 @@ class BuildingOrdeal:
             async with MendClient(self._service.url, timeout_s=PATIENCE_S) as client:
                 site = await self._open(client)
                 happenings = SiteHappenings(
-                    client, site.id, self.building, self._drawn.seed, 2 * self._drawn.robots + 2
+                    client,
+                    self._service.url,
+                    site.id,
+                    self.building,
+                    self._drawn.seed,
+                    2 * self._drawn.robots + 2,
                 )
                 fleet = await self._let_happen(client, site.id, happenings)
                 fleet = await self._settle(client, site.id, happenings, fleet)
