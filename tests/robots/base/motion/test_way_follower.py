@@ -170,7 +170,7 @@ def test_a_way_that_leads_on_is_looked_for_once_a_scan(monkeypatch: pytest.Monke
     assert lefts_m == sorted(lefts_m, reverse=True)
     assert lefts_m[0] - lefts_m[1] == pytest.approx(0.05)
     turns = np.linspace(0.0, math.tau, 90)
-    round_it = Seen.still(0.5 * np.column_stack([np.cos(turns), np.sin(turns)]) + (0.3, 0.0))
+    round_it = Seen.still(0.35 * np.column_stack([np.cos(turns), np.sin(turns)]) + (0.3, 0.0))
     for _ in range(2):
         now = follower.choose(BasePose(0.3, 0.0, 0.0), STANDING, round_it, 1.0, scanned_s=0.4)
         assert follower.barred
