@@ -1,13 +1,13 @@
 """Days of deliveries in drawn buildings, with robots that find out themselves where they are.
 
     python benchmarks/building_day.py [--first 0] [--buildings 1] [--hours 8] [--robots 3]
-        [--every 600] [--unmapped 0.33] [--localizer enml|exact] [--log FILE]
+        [--every 600] [--unmapped 0.33] [--localizer enml|exact] [--escorts 0] [--log FILE]
 
 People of a building ask for transports, messages and visits about every so many seconds (`--every`,
 for each robot), for so many hours; the dispatcher hands them to the robots, and somebody does what
 robots ask. A fifth of the doors that people open are shut at first. Nothing has to be done by any
-time, so that a day is over once nothing is open any more. Escorts are left out: who follows closely
-hides much of what a laser sees. Told are the requests that were met; how far off robots were while
+time, so that a day is over once nothing is open any more. `--escorts`: so many are asked for to ten
+others. Told are the requests that were met; how far off robots were while
 they said that they knew where they were, how often one was more than 2 m off for longer than 2 s
 without having said that it is lost, and for how many seconds in all; how often one was lost, and
 for how long. `--log` keeps what was said. The exit code is 1 where something was not met, or a
@@ -89,7 +89,8 @@ class WatchedDay:
 def asked(building: Building, seed: int, options: argparse.Namespace) -> RequestsDocument:
     """What people ask for in the course of a day, and when."""
     chance = Random(seed)
-    people, until_s = DispatchHappenings(building, chance, mix=MIX), options.hours * 3600.0
+    people = DispatchHappenings(building, chance, mix={**MIX, "escort": options.escorts})
+    until_s = options.hours * 3600.0
     requests, asked_s, now_s = list[dict[str, Any]](), {}, 0.0
     while (now_s := now_s + chance.expovariate(options.robots / options.every)) < until_s:
         request = people.request(now_s)
@@ -111,6 +112,7 @@ def main() -> int:
     parser.add_argument("--every", type=float, default=600.0)
     parser.add_argument("--unmapped", type=float, default=0.33)
     parser.add_argument("--localizer", choices=["enml", "exact"], default="enml")
+    parser.add_argument("--escorts", type=int, default=0)
     parser.add_argument("--log", type=Path, default=Path(os.devnull))
     options = parser.parse_args()
     with options.log.open("w", encoding="utf-8") as log:

@@ -1,6 +1,7 @@
 """A base on its way: it gets round things and through doors, touches nothing, and says when not."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +16,11 @@ from driven_floor import (
     has_way,
 )
 
-from mend.robots.base.body import BasePose, DriveLimits
+from mend.robots.base.body import STANDING, BasePose, DriveLimits
+from mend.robots.base.motion import way_follower
+from mend.robots.base.motion.local_route import LocalRoute, find_route
+from mend.robots.base.motion.surroundings import Seen
+from mend.robots.base.motion.way_follower import WayFollower
 
 START = BasePose(0.0, 0.0, 0.0)
 LIMITS = pytest.mark.parametrize("limits", [FORWARD, SIDEWAYS], ids=["forward", "sideways"])
@@ -143,3 +148,29 @@ def test_in_drawn_corridors_it_touches_nothing_and_arrives_where_there_is_room(s
     assert done.nearest_m > 0.0
     assert done.end != "endless"
     assert done.end == "arrived" or not has_way(corridor, radius_m + 0.1)
+
+
+def test_a_way_that_leads_on_is_looked_for_once_a_scan(monkeypatch: pytest.MonkeyPatch) -> None:
+    searched: list[tuple[float, float]] = []
+
+    def counted(here: tuple[float, float], *rest: Any) -> LocalRoute:
+        searched.append(here)
+        return find_route(here, *rest)
+
+    monkeypatch.setattr(way_follower, "find_route", counted)
+    goal = BasePose(4.0, 0.0, 0.0)
+    follower = WayFollower(SIDEWAYS, 0.25, 0.05, [(0.0, 0.0), (4.0, 0.0)], goal)
+    free, now, lefts_m = Seen.still(np.array([[0.0, 3.0]])), STANDING, list[float]()
+    for cycle in range(6):
+        here = BasePose(0.05 * cycle, 0.0, 0.0)
+        now = follower.choose(here, now, free, 1.0, scanned_s=0.1 * (cycle // 2))
+        assert now.forward_m_s > 0.0
+        lefts_m.append(follower.left_m)
+    assert len(searched) == 3
+    assert lefts_m == sorted(lefts_m, reverse=True)
+    assert lefts_m[0] - lefts_m[1] == pytest.approx(0.05)
+    turns = np.linspace(0.0, math.tau, 90)
+    round_it = Seen.still(0.35 * np.column_stack([np.cos(turns), np.sin(turns)]) + (0.3, 0.0))
+    for _ in range(2):
+        now = follower.choose(BasePose(0.3, 0.0, 0.0), STANDING, round_it, 1.0, scanned_s=0.4)
+        assert follower.barred
