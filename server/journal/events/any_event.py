@@ -1,0 +1,138 @@
+"""Any event, by its `type`."""
+
+from typing import Annotated, Any
+
+from pydantic import Field, TypeAdapter
+
+from mend.server.journal.events.dialogue_events import (
+    Answered,
+    Claimed,
+    DeadlineExtended,
+    DialogueClosed,
+    DialogueOpened,
+    Escalated,
+    FirstLook,
+    HelpAwaited,
+    HelpNotSeen,
+    HelpVerified,
+    LookedAnew,
+    Prompt,
+    Released,
+    Resolved,
+)
+from mend.server.journal.events.fleet_events import (
+    ErrandBegun,
+    ErrandEnded,
+    FleetTold,
+    LegBegun,
+    LegEnded,
+    PlanChanged,
+    RequestChanged,
+)
+from mend.server.journal.events.node_events import (
+    ClipRecorded,
+    IssueRaised,
+    NodeAbandoned,
+    NodeDone,
+    NodeLeftOut,
+    NodeReset,
+    NodeReturned,
+    NodeStarted,
+    NodeTaken,
+    NodeUndone,
+    StepStarted,
+    SuspectedFalseAlarm,
+)
+from mend.server.journal.events.robot_events import (
+    RobotBack,
+    RobotHolding,
+    RobotLost,
+    RobotResumed,
+    WayFound,
+)
+from mend.server.journal.events.run_events import (
+    InterventionAccepted,
+    InterventionDone,
+    RunAborted,
+    RunFailed,
+    RunFinished,
+    RunPaused,
+    RunResumed,
+    RunStarted,
+)
+from mend.server.journal.events.service_events import (
+    AccessChanged,
+    DocumentDeleted,
+    DocumentKept,
+    SignedIn,
+    SignedOut,
+    SignInFailed,
+)
+from mend.server.journal.events.site_events import (
+    SiteClosed,
+    SiteGivenBack,
+    SiteOpened,
+    SiteRestarted,
+)
+
+AnyEvent = Annotated[
+    RunStarted
+    | NodeStarted
+    | NodeTaken
+    | StepStarted
+    | IssueRaised
+    | ClipRecorded
+    | DialogueOpened
+    | Prompt
+    | FirstLook
+    | LookedAnew
+    | Claimed
+    | Released
+    | Answered
+    | DeadlineExtended
+    | Escalated
+    | HelpAwaited
+    | HelpVerified
+    | HelpNotSeen
+    | Resolved
+    | DialogueClosed
+    | InterventionAccepted
+    | InterventionDone
+    | NodeDone
+    | NodeReset
+    | NodeLeftOut
+    | NodeReturned
+    | NodeUndone
+    | NodeAbandoned
+    | SuspectedFalseAlarm
+    | RunPaused
+    | RunResumed
+    | RunFinished
+    | RunFailed
+    | RunAborted
+    | RobotLost
+    | RobotBack
+    | RobotHolding
+    | RobotResumed
+    | WayFound
+    | DocumentKept
+    | DocumentDeleted
+    | SignedIn
+    | SignInFailed
+    | SignedOut
+    | AccessChanged
+    | SiteOpened
+    | SiteGivenBack
+    | SiteRestarted
+    | SiteClosed
+    | RequestChanged
+    | PlanChanged
+    | FleetTold
+    | LegBegun
+    | LegEnded
+    | ErrandBegun
+    | ErrandEnded,
+    Field(discriminator="type"),
+]
+
+any_event: TypeAdapter[Any] = TypeAdapter(AnyEvent)

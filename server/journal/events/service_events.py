@@ -1,0 +1,77 @@
+"""Events of the service: its documents, and who came in."""
+
+from typing import Literal
+from uuid import UUID
+
+from mend.server.access.roles import Role
+from mend.server.journal.events.event import Author, EventModel, ServiceEvent
+
+
+class DocumentKept(ServiceEvent):
+    """A task tree, scene or scenario was uploaded; journaled as it is kept."""
+
+    type: Literal["document_kept"] = "document_kept"
+    kind: Literal["tree", "scene", "scenario"]
+    name: str
+    replaced: bool
+    author: Author | None
+
+
+class DocumentDeleted(ServiceEvent):
+    """An uploaded task tree, scene or scenario was deleted; journaled as it is."""
+
+    type: Literal["document_deleted"] = "document_deleted"
+    kind: Literal["tree", "scene", "scenario"]
+    name: str
+    author: Author | None
+
+
+class AddressCount(EventModel):
+    """How often something came from an address."""
+
+    address: str
+    times: int
+
+
+class SignedIn(ServiceEvent):
+    """A principal signed in, `times` since the last such event; `elsewhere`: at more addresses."""
+
+    type: Literal["signed_in"] = "signed_in"
+    principal: str
+    role: Role
+    times: int
+    addresses: list[AddressCount]
+    elsewhere: int = 0
+
+
+class SignInFailed(ServiceEvent):
+    """Wrong tokens and codes were shown, `times` since the event before, by whomever."""
+
+    type: Literal["sign_in_failed"] = "sign_in_failed"
+    times: int
+    addresses: list[AddressCount]
+    elsewhere: int = 0
+
+
+class SignedOut(ServiceEvent):
+    """A session was ended; its cookie, good until `expires`, opens nothing any more."""
+
+    type: Literal["signed_out"] = "signed_out"
+    session: str
+    expires: int
+    author: Author
+
+
+class AccessChanged(ServiceEvent):
+    """Somebody was given access, or it was taken from them.
+
+    `change` is the id that the file of principals gives it. `address` of the author is None for
+    what was done on the service's machine.
+    """
+
+    type: Literal["access_changed"] = "access_changed"
+    what: Literal["added", "rotated", "revoked", "enrolment_opened", "enrolled"]
+    principal: str
+    role: Role
+    author: Author
+    change: UUID | None = None

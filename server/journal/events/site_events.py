@@ -1,0 +1,51 @@
+"""Events of a site."""
+
+from typing import Any, Literal
+from uuid import UUID
+
+from mend.server.journal.events.event import Author, ServiceEvent
+
+
+class SiteEvent(ServiceEvent):
+    """An event of a site, which runs use or not."""
+
+    site: UUID
+
+
+class SiteOpened(SiteEvent):
+    """A simulated world was started, with these robots, to be there until it is closed."""
+
+    type: Literal["site_opened"] = "site_opened"
+    world: str
+    scene: str
+    robots: list[str]
+    seed: int
+    speed: float | Literal["max"]
+    options: dict[str, Any]
+    author: Author | None = None
+
+
+class SiteGivenBack(SiteEvent):
+    """A run has ended, and its robots are the site's again.
+
+    `moved`: what it left at which place.
+    """
+
+    type: Literal["site_given_back"] = "site_given_back"
+    of_run: UUID
+    robots: list[str]
+    moved: dict[str, str]
+
+
+class SiteRestarted(SiteEvent):
+    """A site's world had ended, and is started again where the journal has it."""
+
+    type: Literal["site_restarted"] = "site_restarted"
+    reason: str
+
+
+class SiteClosed(SiteEvent):
+    """A site's world was stopped for good."""
+
+    type: Literal["site_closed"] = "site_closed"
+    author: Author | None = None
