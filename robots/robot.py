@@ -242,6 +242,11 @@ class Robot:
         if isinstance(body, Start | Resume | Look) and self._coming_to_rest:
             self._waiting.append((command_id, body))
             return
+        if isinstance(body, Start) and not self._executing and self._between_floors:
+            self._drop_look()
+            self._activity = self._calming = self._ride_on()
+            self._waiting.append((command_id, body))
+            return
         match body:
             case Start():
                 self._start(body)
@@ -314,6 +319,11 @@ class Robot:
             yield
         self._report(Holding(execution=execution, at=self._where()))
 
+    def _ride_on(self) -> Routine[None]:
+        """Wait until it is on a floor: its program may have begun anew in the middle of a ride."""
+        while self._between_floors:
+            yield
+
     def _retreat_idle(self) -> Routine[None]:
         for each in self._subsystems:
             yield from each.retreat()
@@ -360,6 +370,10 @@ class Robot:
     @property
     def _executing(self) -> bool:
         return self._activity is not None and not self._looking
+
+    @property
+    def _between_floors(self) -> bool:
+        return any(each.between_floors for each in self._subsystems)
 
     @property
     def _walking(self) -> bool:

@@ -81,6 +81,7 @@ class ArmSubsystem:
     driven = None
     avoids_ways = False
     notes_taken = False
+    between_floors = False
 
     @property
     def behaviors(self) -> Collection[str]:

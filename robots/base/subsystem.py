@@ -103,6 +103,12 @@ class BaseSubsystem:
         for item in told.items:
             self.effector.basket.memory.forget(item)
 
+    @property
+    def between_floors(self) -> bool:
+        """Whether it is in a cabin that is under way."""
+        ways = self.effector.ways
+        return ways.has_places and ways.floor(self.effector.body.pose()) is None
+
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> BaseExecution:
         """What a start command asks for, not begun. Raises `CommandError`."""
         behavior = self._behaviors[start.behavior]()

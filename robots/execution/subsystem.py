@@ -71,6 +71,11 @@ class Subsystem(Protocol):
         """Forget what was taken out of its basket for others."""
         ...
 
+    @property
+    def between_floors(self) -> bool:
+        """Whether it rides, so that nothing can be begun from where it is."""
+        ...
+
     def execution_of(self, start: Start, report: Callable[[ReportBody], None]) -> AnyExecution:
         """What a start command asks for, not begun. Raises `CommandError`."""
         ...

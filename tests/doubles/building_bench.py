@@ -1,6 +1,6 @@
 """Robots in a made-up building, with what they report kept for a test."""
 
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from mend.maps.building.building import Building
 from mend.maps.building.random_building import random_building
@@ -42,6 +42,7 @@ class BuildingBench:
         blocked_hallways: float = 0.0,
         no_shows: float = 0.0,
         dawdling: float = 0.0,
+        snapshot: dict[str, Any] | None = None,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
         setup = WorldSetup(
@@ -49,6 +50,7 @@ class BuildingBench:
             scene=self.scene,
             seed=seed,
             speed=None,
+            snapshot=snapshot,
             options={
                 "shut_doors": shut_doors,
                 "wrong_floors": wrong_floors,

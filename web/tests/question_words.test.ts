@@ -37,6 +37,7 @@ describe("a detection on a picture", () => {
     explanation: "",
     guesses: [],
     between: [],
+    robot: null,
   };
 
   it("is scaled to the picture, which may be an enlarged one", () => {

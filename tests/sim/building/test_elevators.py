@@ -2,6 +2,7 @@
 
 import json
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,14 +17,13 @@ from mend.robots.link.messages import (
     IssueDetected,
     Look,
     Looked,
+    Rejected,
     Resume,
     StepStarted,
 )
-from mend.sim.building.buildings import BUILDINGS
 from mend.sim.building.cabin import CabinState
 from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.scene import scene_of
-from mend.sim.world import WorldSetup
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.scene import Scene
 
@@ -196,21 +196,26 @@ def test_who_gave_up_in_a_cabin_goes_on_from_where_it_got_out() -> None:
     assert bench.world.touches == 0
 
 
-def test_a_building_is_rebuilt_in_the_middle_of_a_ride() -> None:
+def rebuilt_between_floors() -> tuple[dict[str, Any], BuildingBench]:
     scene = office(Caller.ROBOTS)
     bench = BuildingBench(scene)
     bench.go("robot1", "F2-201")
-    while bench.world.elevators.cabins["lift1"].state is not CabinState.MOVING:
+    floors = bench.world.building
+    while floors.floor_at(bench.world.robots[0].pose().z) is not None:
         bench.group.advance(0.05)
     snapshot = json.loads(json.dumps(bench.group.snapshot()))
-    again = BUILDINGS.create_agents(
-        WorldSetup(
-            robots=["robot1"],
-            scene=scene,
-            seed=1,
-            speed=None,
-            snapshot=snapshot,
-            options={"localizer": "exact", "unmapped": 0.0},
-        )
-    )
-    assert again.snapshot() == snapshot
+    return snapshot, BuildingBench(scene, snapshot=snapshot)
+
+
+def test_a_building_is_rebuilt_in_the_middle_of_a_ride() -> None:
+    snapshot, again = rebuilt_between_floors()
+    assert again.group.snapshot() == snapshot
+
+
+def test_a_robot_that_begins_anew_between_floors_rides_on_before_it_does_anything() -> None:
+    _, again = rebuilt_between_floors()
+    again.go("robot1", "F2-201")
+    again.run()
+    assert [again.of(Rejected), len(again.of(Finished))] == [[], 1]
+    assert again.world.robots[0].at.floor == "F2"
+    assert again.world.touches == 0
