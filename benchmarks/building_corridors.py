@@ -41,13 +41,12 @@ from mend.robots.link.messages import (
 )
 from mend.sim.building.scene import scene_of
 from mend.tasks.intervention import Act, Intervention
-from mend.tasks.scene import Place, Pose, Scene
+from mend.tasks.scene import MOST_ROBOTS, Place, Pose, Scene
 
 SLICE_S = 0.5
 THINKS_S = 2.0
 LOOKS_S = 60.0
 TRIES_EVERY_S = 5
-MOST_ROBOTS = 8
 STANDS_M, STANDS_S = 0.3, 180.0
 
 

@@ -23,6 +23,7 @@ LinearRgb = Annotated[
 ]
 FullExtents = Annotated[tuple[Length, Length, Length], Unit("lengths along x, y and z in metres")]
 
+MOST_ROBOTS = 64
 QUARTER = math.pi / 2
 _OFF_QUARTER_RAD = 0.01
 
@@ -117,5 +118,5 @@ class Scene(StrictModel):
     objects: dict[Name, SceneObject]
     places: dict[Name, Place]
     scatter: Scatter = Scatter()
-    robots: Annotated[dict[Name, Base], Field(max_length=8)] = {}
+    robots: Annotated[dict[Name, Base], Field(max_length=MOST_ROBOTS)] = {}
     setting: dict[str, JsonValue] = {}

@@ -19,6 +19,9 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
+MOST_ROBOTS = 64
+"""As scenes have it, which take long to load."""
+
 OutputFile = Annotated[
     Path, typer.Option("--output", "-o", metavar="FILE", help="Where to write it, .yaml.")
 ]
@@ -186,7 +189,9 @@ def draw(
 def scene(
     file: BuildingFile,
     output: OutputFile,
-    robots: Annotated[int, typer.Option(min=1, max=8, help="How many robots are in it.")] = 1,
+    robots: Annotated[
+        int, typer.Option(min=1, max=MOST_ROBOTS, help="How many robots are in it.")
+    ] = 1,
 ) -> None:
     """Write a scene file that task files can name: the building, its places, and robots in it.
 

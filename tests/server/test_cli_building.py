@@ -7,8 +7,10 @@ import pytest
 from typer.testing import CliRunner
 
 from mend.fleet.request_file import read_request_file
+from mend.server.cli import building
 from mend.server.cli.building import app
 from mend.server.cli.failures import CommandLineError
+from mend.tasks import scene
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "buildings" / "office.yaml"
 NODES = [{"id": each, "loc": {"x": 5.0 * each, "y": 0.0}} for each in range(3)]
@@ -27,6 +29,10 @@ def run(*arguments: object) -> str:
     result = CliRunner().invoke(app, [str(each) for each in arguments], catch_exceptions=False)
     assert result.exit_code == 0, result.output
     return result.output
+
+
+def test_as_many_robots_are_put_into_a_building_as_a_scene_takes() -> None:
+    assert building.MOST_ROBOTS == scene.MOST_ROBOTS
 
 
 def test_the_example_has_no_mistakes_and_a_picture_of_each_floor(tmp_path: Path) -> None:
