@@ -506,6 +506,10 @@ class FleetAtWork:
         """Where a robot says that it is; None until it has."""
         return self._site.base(robot)
 
+    def battery(self, robot: str) -> float | None:
+        """What a robot's battery holds, as a share; None where it does not run out or say so."""
+        return self._site.battery(robot)
+
     async def read(self, view: Callable[[Dispatcher], T]) -> T:
         """What a view of its dispatcher shows, while nothing changes there."""
         async with self._at_once:

@@ -97,18 +97,22 @@ class RobotPose(View):
 
 
 class FleetLeg(View):
-    """What a robot is at: for a request, or (None) to a place where somebody wants it."""
+    """What a robot is at: for a request, or (None) to a place where somebody wants it.
+
+    `charges`: it goes there to charge, by itself.
+    """
 
     place: str
     action: LegAction | None
     request: str | None
+    charges: bool = False
 
 
 class FleetRobot(View):
     """A robot of a fleet: whether it works, where it is, what it has aboard, is at and is to do.
 
     `out_of_service`: why somebody has taken it out; None where nobody has. `home`: its first place;
-    `run`: which has it now.
+    `run`: which has it now. `battery`: what that holds, as a share; None where it does not run out.
     """
 
     robot: str
@@ -118,6 +122,7 @@ class FleetRobot(View):
     home: str
     run: UUID | None
     pose: RobotPose | None
+    battery: float | None
     aboard: list[str]
     at_work: FleetLeg | None
     stops: list[PlannedStop]
@@ -206,6 +211,7 @@ def _robots(fleet: "FleetAtWork", dispatcher: "Dispatcher") -> list[FleetRobot]:
             home=homes[name],
             run=fleet.run_of(name),
             pose=None if (base := bases[name]) is None else RobotPose.of(base),
+            battery=fleet.battery(name),
             aboard=aboard[name],
             at_work=_at_work(name, fleet, dispatcher),
             stops=[_stop(*each) for each in stops[name]],
@@ -219,7 +225,9 @@ def _at_work(robot: str, fleet: "FleetAtWork", dispatcher: "Dispatcher") -> Flee
     if leg is not None:
         return FleetLeg(place=leg.place, action=leg.action, request=leg.booking)
     errand = fleet.errands.get(robot)
-    return None if errand is None else FleetLeg(place=errand.place, action=None, request=None)
+    if errand is None:
+        return None
+    return FleetLeg(place=errand.place, action=None, request=None, charges=errand.charges)
 
 
 def _stop(stop: "NextStop", action: LegAction) -> PlannedStop:

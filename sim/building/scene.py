@@ -17,8 +17,8 @@ NEEDS_M = RADIUS_M + SPARE_M
 APART_M = 1.0
 """Robots begin so far from each other."""
 _ODD = re.compile(r"[^A-Za-z0-9_-]")
-_BEGINS = (PlaceKind.CHARGER, PlaceKind.PARKING, PlaceKind.ROOM, PlaceKind.WAYPOINT)
-"""Where robots begin on a floor, the first kind first: out of others' way."""
+_BEGINS = (PlaceKind.CHARGER, PlaceKind.PARKING, PlaceKind.WAYPOINT, PlaceKind.ROOM)
+"""Where robots begin on a floor, the first kind first: two hardly meet in a room's door."""
 _LONGEST = 64
 
 

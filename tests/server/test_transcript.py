@@ -9,6 +9,7 @@ import pytest
 
 from mend.dialogue.evidence import Change
 from mend.dialogue.script import CloseReason, Help
+from mend.robots.link.messages import Detection
 from mend.server.access.roles import Role
 from mend.server.journal import events as ev
 from mend.server.transcript import (
@@ -129,7 +130,7 @@ def test_only_neighbours_of_one_thread_are_joined() -> None:
 
 
 def test_an_issue_says_where_and_why() -> None:
-    detection = ev.Detection(camera="forearm", explanation="no blob of pink_bar")
+    detection = Detection(camera="forearm", explanation="no blob of pink_bar")
     raised = ev.IssueRaised(
         **NODE,
         robot="pr2",

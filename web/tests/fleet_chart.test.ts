@@ -17,7 +17,7 @@ const stop = (action: string, begins_s: number, done_s: number, fields: object =
   place: "F1/101", action, request: "tea", begins_s, done_s, slack_s: 40, partner: null, ...fields,
 });
 const robot = (name: string, fields: object = {}): FleetRobot =>
-  ({ robot: name, works: true, connected: true, out_of_service: null, home: "F1/101", run: null, pose: null, aboard: [], at_work: null, stops: [], ...fields }) as FleetRobot;
+  ({ robot: name, works: true, connected: true, out_of_service: null, home: "F1/101", run: null, pose: null, battery: null, aboard: [], at_work: null, stops: [], ...fields }) as FleetRobot;
 
 describe("rows of a fleet's chart", () => {
   it("have a bar from when a leg began until it ended, and of what goes on until now", () => {

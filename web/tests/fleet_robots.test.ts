@@ -13,10 +13,10 @@ const plan = planOf(OFFICE)!;
 const ONE = "robot1-0a1b2c3d";
 
 const robot = (fields: object = {}): FleetRobot =>
-  ({ robot: ONE, works: true, connected: true, out_of_service: null, home: "F1/101", run: null, pose: null, aboard: [], at_work: null, stops: [], ...fields }) as FleetRobot;
+  ({ robot: ONE, works: true, connected: true, out_of_service: null, home: "F1/101", run: null, pose: null, battery: null, aboard: [], at_work: null, stops: [], ...fields }) as FleetRobot;
 const fleet = (...robots: FleetRobot[]) => ({ robots }) as unknown as FleetView;
 const pose = (x: number, age_s = 0) => ({ x, y: 0, z: 0, yaw: 0, age_s, covariance: null });
-const at_work = { place: "F2/204", action: "collect", request: "tea" };
+const at_work = { place: "F2/204", action: "collect", request: "tea", charges: false };
 
 describe("robots of a fleet", () => {
   it("drive to the place of their leg, ask, or have nothing to do", () => {
@@ -43,7 +43,8 @@ describe("robots of a fleet", () => {
 
   it("say what they are at", () => {
     expect(isAtInWords(robot({ at_work }))).toBe("collects tea at F2 204");
-    expect(isAtInWords(robot({ at_work: { place: "F1/101", action: null, request: null } }))).toBe("goes to F1 101");
+    expect(isAtInWords(robot({ at_work: { place: "F1/101", action: null, request: null, charges: false } }))).toBe("goes to F1 101");
+    expect(isAtInWords(robot({ at_work: { place: "F1/c", action: null, request: null, charges: true } }))).toBe("goes to F1 c to charge");
     expect(isAtInWords(robot({ out_of_service: "a squeak", works: false }))).toBe("is out of service: a squeak");
     expect(isAtInWords(robot({ works: false }))).toBe("does not work");
     expect(isAtInWords(robot())).toBe("has nothing to do");
@@ -51,10 +52,10 @@ describe("robots of a fleet", () => {
 
   it("were at what had begun and not ended at that moment", () => {
     const begun = { type: "leg_begun", robot: ONE, place: "F2/204", action: "collect", booking: "tea" };
-    const sent = { type: "errand_begun", robot: "robot2", place: "F1/101" };
+    const sent = { type: "errand_begun", robot: "robot2", place: "F1/101", charges: false };
     const events = [begun, sent, { ...begun, type: "leg_ended" }] as unknown as FleetEvent[];
     const then = legsAfter(events.slice(0, 2));
-    expect([...then]).toEqual([[ONE, at_work], ["robot2", { place: "F1/101", action: null, request: null }]]);
+    expect([...then]).toEqual([[ONE, at_work], ["robot2", { place: "F1/101", action: null, request: null, charges: false }]]);
     expect([...legsAfter(events).keys()]).toEqual(["robot2"]);
     const [working] = fleetAtWorkThen(fleet(robot({ connected: false })), plan, then);
     expect(working).toMatchObject({ task: "working", leaf: "tea", goal: { name: "204" }, lost: false });

@@ -30,10 +30,10 @@ export function legsAfter(events: readonly FleetEvent[]): ReadonlyMap<string, Fl
   for (const event of events) {
     switch (event.type) {
       case "leg_begun":
-        legs.set(event.robot, { place: event.place, action: event.action as LegAction, request: event.booking });
+        legs.set(event.robot, { place: event.place, action: event.action as LegAction, request: event.booking, charges: false });
         break;
       case "errand_begun":
-        legs.set(event.robot, { place: event.place, action: null, request: null });
+        legs.set(event.robot, { place: event.place, action: null, request: null, charges: event.charges });
         break;
       case "leg_ended":
       case "errand_ended":

@@ -38,7 +38,7 @@ export function placeInWords(place: string): string {
 export function isAtInWords({ at_work, works, out_of_service, connected }: FleetRobot): string {
   if (at_work !== null) {
     const place = placeInWords(at_work.place);
-    if (at_work.request === null || at_work.action === null) return `goes to ${place}`;
+    if (at_work.request === null || at_work.action === null) return at_work.charges ? `goes to ${place} to charge` : `goes to ${place}`;
     return `${doesInWords(at_work.action, at_work.request)} at ${place}`;
   }
   if (out_of_service !== null) return `is out of service: ${out_of_service}`;

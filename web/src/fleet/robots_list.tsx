@@ -71,7 +71,7 @@ function Row({ fleet, robot, seen, came, onShow, changed }: RowProps) {
       </div>
       <p class="small">
         {where}
-        {robot.pose?.covariance != null && ` (sure to ${sureInWords(robot.pose.covariance)})`}; {isAtInWords(robot)}.{robot.aboard.length > 0 && ` It has ${robot.aboard.join(", ")} aboard.`}
+        {robot.pose?.covariance != null && ` (sure to ${sureInWords(robot.pose.covariance)})`}; {isAtInWords(robot)}.{robot.battery !== null && ` Battery ${Math.round(100 * robot.battery)} %.`}{robot.aboard.length > 0 && ` It has ${robot.aboard.join(", ")} aboard.`}
       </p>
       {came !== null && <p class="small quiet">{errandInWords(came)}</p>}
       {may("operator") && <Deeds {...{ fleet, robot, changed }} />}
