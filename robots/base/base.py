@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from mend.robots.base.jumps import Jumps
 from mend.robots.base.motion.surroundings import Seen, Surroundings, hidden_behind
 from mend.robots.base.motion.warming_up import warm_up
 from mend.robots.base.motion.way_follower import WayFollower
+from mend.robots.base.open_door import sees_through
 from mend.robots.base.way_ahead import WayAhead
 from mend.robots.base.ways import Ride, Ways
 from mend.robots.base.whereabouts import AlwaysKnown, Whereabouts
@@ -155,15 +156,26 @@ class Base(Effector[BaseBody]):
             nearest_m = np.hypot(points[:, 0] - here.x, points[:, 1] - here.y).min(initial=math.inf)
             return Barrier(max(0.0, float(nearest_m) - self.body.radius_m), None)
         away_m = math.dist(met, (here.x, here.y))
-        share = 1.0 + _BEHIND_M / max(away_m, 1e-6)
-        beyond = here.x + share * (met[0] - here.x), here.y + share * (met[1] - here.y)
         robot = self._failed_at(met, here.z)
         return Barrier(
             away_m=max(0.0, away_m - self.body.radius_m),
-            door=self.ways.door_at(here, beyond) if robot is None else None,
+            door=self._door_where(met, here) if robot is None else None,
             between=self.ways.lane_at(here, met),
             robot=robot,
         )
+
+    def _door_where(self, met: tuple[float, float], here: BasePose) -> str | None:
+        """The shut door where something is met: what is seen through, or passed on the way to
+        that, is open."""
+        away_m = max(math.dist(met, (here.x, here.y)), 1e-6)
+        off = (met[0] - here.x) / away_m, (met[1] - here.y) / away_m
+        before_m, beyond_m = max(0.0, away_m - _BEHIND_M), away_m + _BEHIND_M
+        before = replace(here, x=here.x + before_m * off[0], y=here.y + before_m * off[1])
+        beyond = here.x + beyond_m * off[0], here.y + beyond_m * off[1]
+        door = self.ways.door_at(before, beyond)
+        posts = None if door is None else self.ways.posts(door, here)
+        is_open = posts is not None and sees_through(self.body.scan(), here, posts)
+        return None if is_open else door
 
     def _failed_at(self, met: tuple[float, float], z: float) -> str | None:
         """The robot that has failed and stands where something is met."""

@@ -15,6 +15,7 @@ from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 from mend.robots.base.body import BasePose
 from mend.robots.base.closed_ways import NO_WAYS, Closed, Lane
 from mend.robots.base.motion.surroundings import NOTHING, Points
+from mend.robots.base.open_door import Posts
 from mend.robots.base.ways import Ride
 from mend.robots.execution.command_error import CommandError
 from mend.tasks.frames import Frame
@@ -148,6 +149,14 @@ class FloorWays:
             ):
                 return elevator
         return None
+
+    def posts(self, door: str, here: BasePose) -> Posts | None:
+        """Where a door of the floor of a pose hangs; None for an elevator."""
+        found = self._building.floors[self._floor(here)].doors.get(door)
+        if found is None:
+            return None
+        (ax, ay), (bx, by) = found.posts
+        return self._frame.to_robot(ax, ay), self._frame.to_robot(bx, by)
 
     def lane_at(self, here: BasePose, ahead: Point) -> tuple[str, str] | None:
         """The ends of the lane that a pose and a point ahead are on, the one behind first."""

@@ -7,6 +7,7 @@ from typing import Protocol
 from mend.robots.base.body import BasePose
 from mend.robots.base.closed_ways import NO_WAYS, Closed, Lane
 from mend.robots.base.motion.surroundings import NOTHING, Points
+from mend.robots.base.open_door import Posts
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +88,10 @@ class Ways(Protocol):
         """The door between a pose and a point ahead; None where there is none."""
         ...
 
+    def posts(self, door: str, here: BasePose) -> Posts | None:
+        """Where a door of the floor of a pose hangs; None for an elevator."""
+        ...
+
     def lane_at(self, here: BasePose, ahead: tuple[float, float]) -> tuple[str, str] | None:
         """The neighbouring places between which a pose and a point ahead are, the one behind first.
 
@@ -143,6 +148,10 @@ class StraightWays:
         return NOTHING
 
     def door_at(self, here: BasePose, ahead: tuple[float, float]) -> str | None:  # noqa: ARG002
+        """None: it knows of no doors."""
+        return None
+
+    def posts(self, door: str, here: BasePose) -> Posts | None:  # noqa: ARG002
         """None: it knows of no doors."""
         return None
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -128,8 +129,22 @@ class Interveners:
         self.crowd.bystanders = [each for each in standing if each not in stepped_aside]
         opened = self._open_for_who_waits()
         pressed = self._press_for_who_waits()
-        done = bool(stepped_aside) or opened or pressed
+        done = bool(stepped_aside) or opened or pressed or self._push_apart()
         return "" if done else "nothing is in the way of any robot"
+
+    def _push_apart(self) -> bool:
+        """Of two robots that stand before each other, and want nothing there, push one aside."""
+        standing = [
+            each
+            for number, each in enumerate(self.crowd.robots)
+            if self._stands(each) and number not in self.goods.wishes
+        ]
+        return any(
+            one.at.floor == other.at.floor
+            and math.hypot(one.at.x - other.at.x, one.at.y - other.at.y) < _ASKED_M
+            and not (self._push_aside(other) and self._push_aside(one))
+            for one, other in combinations(standing, 2)
+        )
 
     def _push_aside(self, robot: BuildingRobot) -> str:
         """Somebody pushes a robot that stands off the lane, where there is room."""
