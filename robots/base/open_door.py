@@ -21,7 +21,7 @@ def sees_through(scan: RangeScan, here: BasePose, posts: Posts) -> bool:
     away = np.array(posts[0]) - (here.x, here.y)
     along = np.array(posts[1]) - np.array(posts[0])
     across = _cross(rays, along)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         reached_m = _cross(away, along) / across
         share = _cross(away, rays) / across
     between = (reached_m > 0.0) & (share > 0.0) & (share < 1.0) & np.isfinite(scan.ranges_m)
