@@ -1,11 +1,13 @@
 """Many robots in the corridors of a building: how many drives an hour, and does one stand for ever?
 
     python benchmarks/building_corridors.py PLAN... [--robots 2 8 20] [--seconds 600] [--seed 0]
+        [--untold]
 
 PLAN: building files (`mend building import` makes them). Whoever has arrived is sent to the next
 place of one list, drawn by the seed, that no other robot is sent to or stands at; places are all
-of the plan but cabins. Ours drive in the simulated building by their lasers; who is asked something
-does what helps, 2 s later. The peer, in the same run with the same list, is prioritized
+of the plan but cabins. Ours drive in the simulated building by their lasers, and are told when they
+meet as a fleet's service tells them (not with `--untold`); who is asked something does what helps,
+2 s later. The peer, in the same run with the same list, is prioritized
 planning (`peers/cooperative_astar.py`): its robots start and stop at once, are never off, and try
 again every 5 s where there is no path.
 A robot stands for ever if it has not moved by 0.3 m for 180 s. The exit code is 1 if one does.
@@ -25,6 +27,7 @@ from random import Random
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 
 from building_bench import BuildingBench
+from met_robots import MetRobots
 from peers.cooperative_astar import Planned
 
 from mend.errors import WrongInputError
@@ -103,11 +106,20 @@ class Driving:
     """Ours: robots of the simulated building, and somebody who helps whoever asks."""
 
     def __init__(
-        self, scene: Scene, goals: Goals, called: dict[str, str], starts: dict[str, str], seed: int
+        self,
+        scene: Scene,
+        goals: Goals,
+        called: dict[str, str],
+        starts: dict[str, str],
+        seed: int,
+        *,
+        told: bool,
     ) -> None:
         self._bench = BuildingBench(scene, seed=seed)
         self._goals, self._called = goals, called
         goals.of.update(starts)
+        self._met = MetRobots(self._bench, goals.of)
+        self._told = told
         self._read = 0
         self._held: dict[str, str] = {}
         self._asked_s: dict[str, float] = {}
@@ -120,12 +132,13 @@ class Driving:
         for robot in self._bench.scene.robots:
             self._send_on(robot)
         while group.time_s() < seconds:
-            group.advance(SLICE_S)
+            (self._met if self._told else group).advance(SLICE_S)
             self._hear()
             self._help()
             self._judge()
         self.tally.took_s = time.process_time() - began_s
         self.tally.counts["touches"] = self._bench.world.touches
+        self.tally.counts["made way"] = len(self._met.told) // 2
         return self.tally
 
     def _send_on(self, robot: str) -> None:
@@ -198,7 +211,7 @@ def planned(building: Building, goals: Goals, starts: dict[str, str], seconds: i
     return tally
 
 
-def compare(plan: Path, robots: int, seconds: float, seed: int) -> bool:
+def compare(plan: Path, robots: int, seconds: float, seed: int, *, told: bool) -> bool:
     """Print one row; whether none of ours stands for ever."""
     building = read_building_file(plan)
     if robots > MOST_ROBOTS:
@@ -216,15 +229,16 @@ def compare(plan: Path, robots: int, seconds: float, seed: int) -> bool:
         )
         for name, base in scene.robots.items()
     }
-    ours = Driving(scene, Goals(list(called), seed), called, starts, seed).run(seconds)
+    goals = Goals(list(called), seed)
+    ours = Driving(scene, goals, called, starts, seed, told=told).run(seconds)
     peer = planned(building, Goals(list(called), seed), starts, int(seconds))
     hours = seconds / 3600.0
     ratio = ours.arrived / peer.arrived if peer.arrived else math.inf
-    told = ", ".join(f"{count} {what}" for what, count in sorted(ours.counts.items()) if count)
+    counts = ", ".join(f"{count} {what}" for what, count in sorted(ours.counts.items()) if count)
     print(
         f"{plan.stem:16} {robots:3} robots {ours.arrived / hours:7.0f} drives an hour, prioritized "
         f"planning {peer.arrived / hours:7.0f}: {ratio:.2f} x; stand for ever: {len(ours.stood)}, "
-        f"{len(peer.stood)}; {ours.took_s:.0f} s, {peer.took_s:.0f} s of processor; {told}",
+        f"{len(peer.stood)}; {ours.took_s:.0f} s, {peer.took_s:.0f} s of processor; {counts}",
         flush=True,
     )
     return not ours.stood
@@ -243,12 +257,13 @@ def main() -> int:
     parser.add_argument("--robots", nargs="+", type=int, default=[2, 8, 20])
     parser.add_argument("--seconds", type=float, default=600.0)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--untold", action="store_true", help="nobody tells robots that they meet")
     options = parser.parse_args()
     if not options.plans:
         print("no building file was given: nothing is measured")
         return 0
     good = [
-        compare(plan, robots, options.seconds, options.seed)
+        compare(plan, robots, options.seconds, options.seed, told=not options.untold)
         for plan in options.plans
         for robots in options.robots
     ]

@@ -256,7 +256,7 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"try again \(attempt (\d+) of \d+\)", _next_try),
     (r"I (?:go on with|take) (.*?) (?:first|instead)", _then_with),
     (r"[Tt]he task ends here", _ends),
-    (r"I go on\.", _goes_on),
+    (r"(?<!before )I go on\.", _goes_on),
     (r"I leave the .* out", _left_out),
 )
 """What in a sentence is compared with what; a sentence may be compared with several things."""

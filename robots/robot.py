@@ -28,6 +28,7 @@ from mend.robots.link.messages import (
     IssueDetected,
     Look,
     Looked,
+    MakeWay,
     NoteTaken,
     Picture,
     PoseLayout,
@@ -109,6 +110,7 @@ class Robot:
             room=next((each.room for each in subsystems if each.room is not None), None),
             keeps_clear=all(each.keeps_clear for each in subsystems),
             avoids_ways=any(each.avoids_ways for each in subsystems),
+            makes_way=any(each.makes_way for each in subsystems),
             notes_taken=any(each.notes_taken for each in subsystems),
         )
 
@@ -262,6 +264,9 @@ class Robot:
             case Avoid():
                 for each in self._subsystems:
                     each.avoid(body)
+            case MakeWay():
+                for each in self._subsystems:
+                    each.make_way(body)
             case NoteTaken():
                 for each in self._subsystems:
                     each.note_taken(body)

@@ -28,6 +28,7 @@ from mend.robots.link.messages import (
     Avoid,
     Look,
     Looked,
+    MakeWay,
     NoteTaken,
     PoseLayout,
     Poses,
@@ -80,6 +81,7 @@ class ArmSubsystem:
     keeps_clear = False
     driven = None
     avoids_ways = False
+    makes_way = False
     notes_taken = False
     between_floors = False
 
@@ -108,6 +110,9 @@ class ArmSubsystem:
 
     def avoid(self, told: Avoid) -> None:
         """It goes nowhere."""
+
+    def make_way(self, told: MakeWay) -> None:
+        """An arm stands in nobody's way."""
 
     def note_taken(self, told: NoteTaken) -> None:
         """It has no basket."""

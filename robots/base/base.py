@@ -16,6 +16,7 @@ from mend.robots.base.companion import Companion, Company, NoCompanion
 from mend.robots.base.driven_way import DrivenWay
 from mend.robots.base.elevators import Elevators, NoElevators
 from mend.robots.base.jumps import Jumps
+from mend.robots.base.made_way import MadeWay
 from mend.robots.base.motion.surroundings import Seen, Surroundings, hidden_behind
 from mend.robots.base.motion.warming_up import warm_up
 from mend.robots.base.motion.way_follower import WayFollower
@@ -77,6 +78,8 @@ class Base(Effector[BaseBody]):
         self.asks_after_s = 0.0
         """So long others have, once they know, to do what it is about before it asks people."""
         self.at_rest = True
+        self.made_way: MadeWay | None = None
+        """What it was last told to do about another robot that it has met."""
         self.failed: Mapping[str, tuple[float, float, float]] = {}
         """Where robots stand that work no more, as it was told (base frame)."""
         self._speed = 1.0
@@ -91,6 +94,13 @@ class Base(Effector[BaseBody]):
         """Begin to drive to a pose, at `speed` in (0, 1] of its best. Raises `CommandError`."""
         self._following, self._speed = self._follower(to), speed
         self._barred = self._barrier = None
+        self.at_rest = False
+
+    def start_along(self, way: Sequence[tuple[float, float]]) -> None:
+        """Begin to drive along points of this floor, whatever its map says of lanes."""
+        here, (x, y) = self.body.pose(), way[-1]
+        self._following = self._along(way, replace(here, x=x, y=y))
+        self._speed, self._barred, self._barrier = 1.0, None, None
         self.at_rest = False
 
     def jumps(self) -> bool:
@@ -257,9 +267,12 @@ class Base(Effector[BaseBody]):
         """Every cycle asks how fast it may go."""
 
     def _follower(self, to: BasePose) -> WayFollower:
+        return self._along(self.ways.path(self.body.pose(), to, self._closed_now), to)
+
+    def _along(self, way: Sequence[tuple[float, float]], to: BasePose) -> WayFollower:
         body, here = self.body, self.body.pose()
-        way = [(here.x, here.y), *self.ways.path(here, to, self._closed_now)]
-        return WayFollower(body.limits, body.radius_m, body.control_period_s, way, to)
+        whole = [(here.x, here.y), *way]
+        return WayFollower(body.limits, body.radius_m, body.control_period_s, whole, to)
 
     @property
     def _closed_now(self) -> Closed:

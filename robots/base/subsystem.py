@@ -18,6 +18,7 @@ from mend.robots.base.body import BaseBody, BasePose
 from mend.robots.base.companion import Companion
 from mend.robots.base.elevators import Elevators
 from mend.robots.base.looks import answer, look_as_told
+from mend.robots.base.made_way import MadeWay
 from mend.robots.base.monitors.monitor import BaseView
 from mend.robots.base.ways import StraightWays, Ways
 from mend.robots.base.whereabouts import Whereabouts
@@ -34,6 +35,7 @@ from mend.robots.link.messages import (
     Location,
     Look,
     Looked,
+    MakeWay,
     NoteTaken,
     PoseLayout,
     Poses,
@@ -92,6 +94,16 @@ class BaseSubsystem:
         self.effector.closed.tell(ways)
         self.effector.asks_after_s = told.asks_after_s
         self.effector.failed = {each.robot: (each.x, each.y, each.z) for each in told.failed}
+
+    @property
+    def makes_way(self) -> bool:
+        """It drives, so it may meet others."""
+        return True
+
+    def make_way(self, told: MakeWay) -> None:
+        """Do so in the drive under way; who is not driving bars nobody's way for long."""
+        way = [(each.x, each.y) for each in told.way]
+        self.effector.made_way = MadeWay(way, told.z, told.until)
 
     @property
     def notes_taken(self) -> bool:
@@ -174,7 +186,9 @@ class BaseSubsystem:
         covariance = None if known is None else list(known)
         battery = self.effector.battery
         share = None if battery.endless else battery.share
-        shown = {"base": base, "covariance": covariance, "battery": share}
+        following = self.effector.following
+        barred = None if following is None else following.barred
+        shown = {"base": base, "covariance": covariance, "battery": share, "barred": barred}
         return poses.model_copy(update=shown)
 
     def note(self, looked: Looked) -> None:

@@ -12,6 +12,7 @@ from mend.robots.link.messages import (
     Driven,
     Look,
     Looked,
+    MakeWay,
     NoteTaken,
     PoseLayout,
     Poses,
@@ -60,6 +61,15 @@ class Subsystem(Protocol):
 
     def avoid(self, told: Avoid) -> None:
         """Keep off ways where others lead."""
+        ...
+
+    @property
+    def makes_way(self) -> bool:
+        """Whether it makes way for another robot that it meets."""
+        ...
+
+    def make_way(self, told: MakeWay) -> None:
+        """Make way for another robot, or wait for one that does."""
         ...
 
     @property

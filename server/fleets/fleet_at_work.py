@@ -16,6 +16,7 @@ from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd, LegOutcome
 from mend.fleet.requests import RequestKind
+from mend.fleet.right_of_way.right_of_way import Yielding
 from mend.server.access.principal import RESERVED
 from mend.server.background import Endless
 from mend.server.fleets.alarms import Alarms
@@ -29,6 +30,8 @@ from mend.server.fleets.found_ways import FoundWays
 from mend.server.fleets.leg_execution import LegExecution, LegTurn
 from mend.server.fleets.leg_task import doable_kinds, require_doable, taken_out
 from mend.server.fleets.making_way import who_makes_way
+from mend.server.fleets.meeting_watch import MeetingWatch
+from mend.server.fleets.meetings import Meetings, Occupation
 from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
@@ -97,9 +100,14 @@ class FleetAtWork:
         self.closed_ways = ClosedWays(dispatcher, () if kept is None else kept.closed_ways)
         self._found_ways = FoundWays(dispatcher, self.closed_ways)
         self._charging = Charging(dispatcher, site.battery, places.names)
+        meetings = Meetings(dispatcher.building, site.frames, places.names, self._occupation)
+        self.meeting_watch = MeetingWatch(
+            meetings, site.make_way, self._have_met, lambda: self.shown_s
+        )
         self._behaviors = load_plugins("mend.behaviors")
-        self._main: asyncio.Task[None] | None = None
-        self._hears: asyncio.Task[None] | None = None
+        self._asked_aside: dict[str, str] = {}
+        """Where robots that rest are to go, as they stand in the way of others."""
+        self._running: list[asyncio.Task[None]] = []
         self._set_out: dict[str, Odometer | None] = {}
         """What robots had driven when they set out for the leg that they are on."""
         self._kept: FleetRecord | None = None
@@ -116,14 +124,18 @@ class FleetAtWork:
         self._site.show_bases()
         self._site.hear_of_ways(OTHERS_S)
         self._changed.set()
-        self._main = asyncio.create_task(self._work(), name=f"fleet of {self._site.id}")
-        self._hears = asyncio.create_task(self._hear(), name=f"findings at {self._site.id}")
+        loops = {"fleet of": self._work, "findings at": self._hear}
+        loops["meetings at"] = self.meeting_watch.run
+        self._running = [
+            asyncio.create_task(loop(), name=f"{what} {self._site.id}")
+            for what, loop in loops.items()
+        ]
 
     async def stop(self) -> None:
         """Stop without ending anything: it goes on from the journal."""
         self._site.changed = lambda: None
         tasks = [*(task for _, task in self._legs.values()), *self._going.values()]
-        tasks += [each for each in (self._main, self._hears) if each is not None]
+        tasks += self._running
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
@@ -142,7 +154,9 @@ class FleetAtWork:
             for robot, charger in self._charging.to_send(free, self.now_s):
                 self._send(robot, charger, None, charges=True)
             unwanted = await asyncio.to_thread(self._decide, self.now_s)
-            for robot, to in list(who_makes_way(self.dispatcher, self.places.names)):
+            asked, self._asked_aside = self._asked_aside, {}
+            aside = [*asked.items(), *who_makes_way(self.dispatcher, self.places.names)]
+            for robot, to in aside:
                 if robot not in self._errands.going and self._site.rests(robot):
                     self._send(robot, to, None)
             await self._keep()
@@ -264,6 +278,22 @@ class FleetAtWork:
         finding = found.finding.replace("_", " ")
         told = f"found of the way between {a} and {b}: {finding}"
         self._noted.append(self._news.told(told, finder=found.by))
+
+    def _have_met(self, decided: Yielding, place: str | None) -> None:
+        """A robot makes way for another one; `place`: where it is to go for that, if it rests."""
+        told = f"met {decided.other} where they cannot pass each other, and makes way for it"
+        self._noted.append(self._news.told(told, finder=decided.robot))
+        if place is not None:
+            self._asked_aside[decided.robot] = place
+        self._changed.set()
+
+    def _occupation(self, robot: str) -> Occupation:
+        leg, errand = self._legs.get(robot), self._errands.going.get(robot)
+        if leg is not None:
+            return Occupation(goal=leg[0].place)
+        if errand is not None:
+            return Occupation(goal=errand.place)
+        return Occupation(rests=self._site.rests(robot) and robot not in self.out_of_service)
 
     def _send(
         self, robot: str, place: str, author: ev.Author | None, *, charges: bool = False

@@ -13,12 +13,14 @@ from pydantic import ValidationError
 
 from mend.errors import ConflictError, NotFoundError
 from mend.fleet.requests import STATUS
+from mend.robots.link.messages import Poses
 from mend.server.fleets.fleet_track import FleetTrack
 from mend.server.fleets.runs import Runs
 from mend.server.journal.events import Author
 from mend.server.journal.journal import Document, Entry, Journal
 from mend.server.poses.frame import Frame, time_of
 from mend.server.poses.record import PoseRecord
+from mend.server.robots.sink import FollowPoses
 from mend.server.sites.site import Site
 from mend.server.sites.site_record import SiteRecord
 from mend.server.sites.sites import Sites
@@ -132,16 +134,23 @@ class Fleets:
             site = self._sites.site(record.site)
             fleet = self._opener(site, record, kept, self._runs, self._journal, self._utc_now)
             self._fleets[record.site] = fleet
-            await self._record(site)
+            site.follow_bases(await self._followed(site, fleet))
             fleet.start()
 
-    async def _record(self, site: Site) -> None:
-        """Keep where its robots are from now on, if that is to be kept."""
+    async def _followed(self, site: Site, fleet: "FleetAtWork") -> FollowPoses:
+        """What is told where robots are: the fleet, and what keeps it if that is to be kept."""
         last = await self._poses.last(site.id)
         record = self._poses.record(site.id)
-        if record is not None:
-            since_s = -math.inf if last is None else time_of(last)
-            site.follow_bases(FleetTrack(site.frames, record, since_s).take)
+        if record is None:
+            return fleet.meeting_watch.take
+        since_s = -math.inf if last is None else time_of(last)
+        track = FleetTrack(site.frames, record, since_s)
+
+        def take(robot: str, poses: Poses) -> None:
+            track.take(robot, poses)
+            fleet.meeting_watch.take(robot, poses)
+
+        return take
 
     # --- What people ask ----------------------------------------------------------------------
 

@@ -58,6 +58,11 @@ class LegExecution:
         self._ready: Callable[[], bool] = lambda: True
 
     @property
+    def place(self) -> str:
+        """Where it is done, as `FLOOR/PLACE`."""
+        return self._leg.place
+
+    @property
     def waits(self) -> bool:
         """Whether its robot is there, and waits for its time."""
         return self._waiting is not None

@@ -14,6 +14,7 @@ from mend.robots.link.messages import (
     Held,
     Hello,
     Holding,
+    MakeWay,
     NoteTaken,
     Poses,
     Report,
@@ -196,6 +197,12 @@ class Site:
         for robot, items in self._taken.items():
             if set(items) - set(before.get(robot, ())) and self.is_connected(robot):
                 self._tell_taken(robot)
+
+    def make_way(self, robot: str, told: MakeWay) -> None:
+        """Have a robot make way, or wait for one that does, if it knows of that."""
+        hello = self._registry.hello(robot)
+        if hello is not None and hello.makes_way and self.is_connected(robot):
+            self._registry.send(robot, str(uuid4()), told, renews=False)
 
     def _told_on_coming(self, robot: str) -> None:
         if self._closed or self._asks_after_s or self._failed:

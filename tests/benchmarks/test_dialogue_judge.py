@@ -259,6 +259,12 @@ def test_what_has_lain_in_the_open_for_long_must_not_be_told_to_be_away() -> Non
     assert told(GONE).now(FAR).deed(Act.PUT_BACK).now(FAR, 5.0).say(text).wrong() == []
 
 
+def test_who_says_to_look_before_it_goes_on_has_not_said_to_go_on() -> None:
+    for text, wrong in (("I go on.", ["it was put back"]), ("I look again before I go on.", [])):
+        run = told().say(text).add(ev.NodeReset, reason="no help was seen", failed_attempt=False)
+        assert run.wrong() == wrong
+
+
 def test_what_is_waited_for_is_not_said_to_be_so() -> None:
     assert told(BLOCKED).say("Please clear the way. I wait until I see it free.").wrong() == []
     assert told(BLOCKED).say("I see my way free. I go on.").wrong() != []

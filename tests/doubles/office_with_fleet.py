@@ -1,5 +1,6 @@
 """An office whose robots take requests, with somebody who does whatever they ask."""
 
+from collections.abc import Mapping
 from typing import Literal
 from uuid import UUID
 
@@ -8,6 +9,12 @@ from mend.maps.building.random_building import random_building
 from mend.server.composition import Service
 from mend.server.sites.requests import FleetOptions, SiteRequest
 from mend.sim.building.scene import scene_of
+from mend.tasks.scene import Base
+
+
+def office(floors: int = 1) -> Building:
+    """Six rooms on each floor."""
+    return Building(random_building(7, floors, 6))
 
 
 async def open_office_with_fleet(
@@ -17,13 +24,15 @@ async def open_office_with_fleet(
     robots: int = 1,
     floors: int = 1,
     answers: Literal["live", "yes"] = "yes",
+    stand: Mapping[str, Base] | None = None,
     **more: float,
 ) -> UUID:
     """Open a site there; its robots know where they are, and no door is shut.
 
-    `more` are further options of the world.
+    `stand`: where some of them begin. `more` are further options of the world.
     """
-    scene = scene_of(Building(random_building(7, floors, 6)), "office", robots)
+    scene = scene_of(office(floors), "office", robots)
+    scene = scene.model_copy(update={"robots": {**scene.robots, **(stand or {})}})
     await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
     site = await service.sites.open_site(
         SiteRequest(

@@ -2,10 +2,10 @@
 
 import asyncio
 import math
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from awaited_events import events_until
 from office_with_fleet import open_office_with_fleet
 
 from mend.errors import NotFoundError, WrongInputError
@@ -35,19 +35,6 @@ OVER = {"done", "failed", "cancelled", "refused"}
 
 def settings(folder: Path) -> Settings:
     return Settings(port=0, data_dir=folder, log_level="error", speech_voice="none")
-
-
-async def events_until(
-    service: Service, is_enough: Callable[[list[ev.Event]], bool]
-) -> list[ev.Event]:
-    """All events so far, once there are enough."""
-    events: list[ev.Event] = []
-    with service.journal.subscribe(0, 100_000) as records:
-        async for record in records:
-            events.append(read_event(record.seq, record.text))
-            if is_enough(events):
-                return events
-    raise AssertionError("the journal ended")
 
 
 async def records_of(service: Service) -> list[Record]:

@@ -35,6 +35,7 @@ PARTS: dict[str, type[BaseModel]] = {
     "location": m.Location,
     "closed_way": m.ClosedWay,
     "failed_robot": m.FailedRobot,
+    "way_point": m.WayPoint,
     "intervention": Intervention,
 }
 MODELS = PARTS | {

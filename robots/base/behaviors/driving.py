@@ -9,6 +9,7 @@ from mend.robots.base.behaviors.passing import Passing
 from mend.robots.base.behaviors.progress import BaseProgress
 from mend.robots.base.behaviors.watch import BaseWatch
 from mend.robots.base.body import BasePose
+from mend.robots.base.made_way import MadeWay
 from mend.robots.base.motion.headway import Headway
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.routine import Routine
@@ -58,6 +59,9 @@ class Driving:
         while not (self.is_at(drive.to) and self._base.slow) and not no_more():
             if self._is_kept_off(drive):
                 break
+            if self._base.made_way is not None:
+                yield from self._make_way(drive, self._base.made_way)
+                headway, clears_from = self._headway(), self._clears_from(drive)
             if self._base.following is not None:
                 self._drive_on(drive, headway, clears_from)
             self._watch.check_if_due()
@@ -68,6 +72,24 @@ class Driving:
         self._progress.alone_since_s = None
         yield from self._watched(self._base.settle())
         yield from self._watched(self._base.wait(drive.wait_s))
+
+    def _make_way(self, drive: Drive, made: MadeWay) -> Routine[None]:
+        """Make way for another robot, or let it make way; people are asked for nothing then."""
+        base, progress = self._base, self._progress
+        now_s, here = base.body.time_s, base.body.pose()
+        if now_s() >= made.until_s or abs(here.z - made.z) >= ON_FLOOR_M:
+            base.made_way = None
+            return
+        progress.blocked_since_s, progress.stalled_s = None, 0.0
+        if not made.way:
+            return
+        base.made_way = None
+        base.start_along(made.way)
+        while now_s() < made.until_s and base.following is not None and not base.jumps():
+            base.drive_on()
+            self._watch.check_if_due()
+            yield
+        self._begin(drive)
 
     def _is_kept_off(self, drive: Drive) -> bool:
         """Whether it is near enough, and something that is no door has barred its way for long."""

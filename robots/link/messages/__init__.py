@@ -20,6 +20,7 @@ from mend.robots.link.messages.commands import (
     Intervene,
     Location,
     Look,
+    MakeWay,
     NoteTaken,
     Resume,
     Shutdown,
@@ -27,6 +28,7 @@ from mend.robots.link.messages.commands import (
     Start,
     TakePicture,
     WasDone,
+    WayPoint,
 )
 from mend.robots.link.messages.frames import (
     PROTOCOL_VERSION,
@@ -145,6 +147,7 @@ __all__ = [
     "Location",
     "Look",
     "Looked",
+    "MakeWay",
     "Message",
     "NoteTaken",
     "Picture",
@@ -179,6 +182,7 @@ __all__ = [
     "Time",
     "WasDone",
     "WayFound",
+    "WayPoint",
     "Welcome",
     "Word",
     "robot_message",

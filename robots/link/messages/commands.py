@@ -142,6 +142,28 @@ class Avoid(Message):
     failed: Annotated[list[FailedRobot], Field(max_length=MOST)] = []
 
 
+class WayPoint(Message):
+    """A point of a floor (base frame, metres)."""
+
+    x: Coordinate
+    y: Coordinate
+
+
+class MakeWay(Message):
+    """Make way for the robot `other`, with which it has met where they cannot pass each other.
+
+    It drives along `way` (the last point is where it waits), on the floor at height `z`, and goes
+    on `until` then. Without a way it is the other one that makes way: until then it asks nobody to
+    clear its own.
+    """
+
+    type: Literal["make_way"] = "make_way"
+    other: Word
+    way: Annotated[list[WayPoint], Field(max_length=MOST)] = []
+    z: Coordinate = 0.0
+    until: Time
+
+
 class NoteTaken(Message):
     """People have taken these `items` out of the robot's basket, for other robots.
 
@@ -195,6 +217,7 @@ CommandBody = Annotated[
     | Look
     | SlowDown
     | Avoid
+    | MakeWay
     | NoteTaken
     | Hold
     | Intervene

@@ -39,7 +39,8 @@ class Hello(Message):
     `shows`: what its `poses` hold; None if it sends none. `room`: without it no other robot of its
     run works while its arm does not rest. `keeps_clear`: it moves about and keeps clear of others
     by what it senses itself, so that no space is kept for it. `driven`: None without a base.
-    `avoids_ways`: it takes `avoid`. `notes_taken`: it takes `note_taken`.
+    `avoids_ways`: it takes `avoid`. `notes_taken`: it takes `note_taken`. `makes_way`: it takes
+    `make_way`, and its `poses` say whether it is `barred`.
     """
 
     type: Literal["hello"] = "hello"
@@ -59,6 +60,7 @@ class Hello(Message):
     driven: Driven | None = None
     avoids_ways: bool = False
     notes_taken: bool = False
+    makes_way: bool = False
 
 
 class Report(Message):
@@ -108,7 +110,8 @@ class Poses(Message):
     the ground of the scene; all other poses are in the base frame. `covariance`: how sure it is of
     that, as the variances and the covariance xx, xy, yy of its place along the axes of its map
     (m2); None where it does not say. `battery`: what its battery holds, as a share of what it can;
-    None where it does not run out. `tool`: the tool point (x the approach direction, y the
+    None where it does not run out. `barred`: whether what it sees leaves it no way on; None while
+    it is not driving. `tool`: the tool point (x the approach direction, y the
     opening direction of the fingers).
     """
 
@@ -118,6 +121,7 @@ class Poses(Message):
     base: PoseValues = IDENTITY
     covariance: Annotated[list[Coordinate], Field(min_length=3, max_length=3)] | None = None
     battery: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
+    barred: bool | None = None
     tool: PoseValues
     opening_m: Coordinate
     objects: list[ShownPose] = []

@@ -15,7 +15,7 @@ from mend.errors import ConflictError, NotFoundError
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.requests import RequestStatus
 from mend.robots.base.behaviors.behavior import MEETS_M
-from mend.robots.link.messages import Driven
+from mend.robots.link.messages import Driven, MakeWay
 from mend.server.fleets import leg_execution
 from mend.server.fleets.fleet_at_work import FleetAtWork
 from mend.server.fleets.fleet_record import FleetRecord
@@ -31,6 +31,7 @@ from mend.server.runtime.views import RunStatus
 from mend.server.sites.odometer import Odometer
 from mend.server.sites.requests import FleetOptions
 from mend.tasks.definition import TaskTreeDefinition
+from mend.tasks.frames import Frame
 from mend.tasks.scene import Place, Pose, Scene
 
 SITE = UUID(int=9)
@@ -63,6 +64,7 @@ class FakeSite:
         self.failed: list[str] = []
         self.batteries: dict[str, float] = {}
         self.taken: Mapping[str, list[str]] = {}
+        self.made_way: list[tuple[str, MakeWay]] = []
 
     def odometer(self, robot: str) -> Odometer | None:
         return self.odometers.get(robot)
@@ -74,6 +76,13 @@ class FakeSite:
 
     def hear_of_ways(self, asks_after_s: float) -> None:
         self.asks_after_s = asks_after_s
+
+    @property
+    def frames(self) -> Mapping[str, Frame]:
+        return {}
+
+    def make_way(self, robot: str, told: MakeWay) -> None:
+        self.made_way.append((robot, told))
 
     def note_taken(self, taken: Mapping[str, list[str]]) -> None:
         self.taken = taken

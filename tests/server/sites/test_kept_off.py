@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 from uuid import UUID
 
-from mend.robots.link.messages import Avoid, ClosedWay, FailedRobot, Hello, NoteTaken
+from mend.robots.link.messages import Avoid, ClosedWay, FailedRobot, Hello, MakeWay, NoteTaken
 from mend.server.runtime.clock import WorldTime
 from mend.server.sites.site import Site
 from mend.tasks.frames import Frame
@@ -19,7 +19,7 @@ class FakeRegistry:
 
     def __init__(self) -> None:
         self.hellos: dict[str, Hello] = {}
-        self.told: list[tuple[str, Avoid | NoteTaken]] = []
+        self.told: list[tuple[str, Avoid | MakeWay | NoteTaken]] = []
 
     def connected(self, robot: str) -> bool:
         return robot in self.hellos
@@ -31,7 +31,7 @@ class FakeRegistry:
         """Nobody says where it is."""
 
     def send(self, robot: str, _: str, body: Any, **__: object) -> None:
-        if isinstance(body, Avoid | NoteTaken):
+        if isinstance(body, Avoid | MakeWay | NoteTaken):
             self.told.append((robot, body))
 
 
@@ -52,6 +52,7 @@ def hello(robot: str, *, knows: bool = True, boot: str = "1") -> Hello:
         time=0.0,
         avoids_ways=knows,
         notes_taken=knows,
+        makes_way=knows,
     )
 
 
@@ -102,6 +103,14 @@ async def test_who_has_a_basket_is_told_once_what_was_taken_out_and_anew_when_it
     site.note_taken({})
     await come(site, registry, hello("ada", boot="3"))
     assert len(registry.told) == 3
+
+
+async def test_who_does_not_know_of_making_way_is_not_told_to() -> None:
+    site, registry = await site_of(hello("ada"), hello("bob", knows=False))
+    told = MakeWay(other="carl", until=9.0)
+    for robot in ("ada", "bob", "carl"):
+        site.make_way(robot, told)
+    assert registry.told == [("ada", told)]
 
 
 async def test_who_is_heard_of_ways_is_told_to_wait_before_it_asks() -> None:

@@ -1,8 +1,10 @@
-"""Two robots meet in a doorway: what each says is true, and somebody pushes one aside."""
+"""Two robots meet in a doorway: one makes way, or else what each says is true and people help."""
 
-from building_bench import BuildingBench, made_up
+import pytest
+from building_bench import LONGEST_S, BuildingBench, made_up
+from met_robots import MetRobots
 
-from mend.robots.link.messages import Finished, IssueDetected, Resume
+from mend.robots.link.messages import Finished, Interrupt, IssueDetected, Resume
 from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.goods import Wish
 from mend.tasks.intervention import Act, Intervention
@@ -11,9 +13,9 @@ CLEAR = Intervention(act=Act.RELEASE)
 ROOM = "101"
 
 
-def face_to_face() -> BuildingBench:
+def face_to_face(seed: int = 1) -> BuildingBench:
     """One is to go into a room that the other one is to leave."""
-    bench = BuildingBench(robots=2)
+    bench = BuildingBench(robots=2, seed=seed)
     floor = made_up().floors["F1"]
     room, door = floor.places[ROOM], floor.doors[ROOM]
     (ax, ay), (bx, by) = door.posts
@@ -23,19 +25,52 @@ def face_to_face() -> BuildingBench:
     bench.world.robots[1].stand(FloorPose("F1", room.x, room.y, 0.0))
     bench.go("robot1", f"F1-{ROOM}")
     bench.go("robot2", "F1-103")
+    return bench
+
+
+def untold() -> BuildingBench:
+    """Robots that no fleet has."""
+    bench = face_to_face()
     while len(bench.of(IssueDetected)) < 2 and bench.group.advance(1.0):
         pass
     bench.run()
     return bench
 
 
-def test_nobody_says_that_an_open_door_is_shut() -> None:
+@pytest.mark.parametrize("seed", range(3))
+def test_who_is_told_makes_way_and_nobody_is_asked(seed: int) -> None:
+    bench = face_to_face(seed)
+    robots = MetRobots(bench, {"robot1": f"F1/{ROOM}", "robot2": "F1/103"})
+    while robots.advance(0.5):
+        assert bench.group.time_s() < LONGEST_S, "they stand before each other for ever"
+    assert len(bench.of(Finished)) == 2
+    assert not bench.of(IssueDetected)
+    assert sorted(robot for robot, _ in robots.told) == ["robot1", "robot2"]
+    assert sorted(bool(told.way) for _, told in robots.told) == [False, True]
+    assert bench.world.touches == 0
+
+
+def test_who_rests_in_the_way_is_sent_elsewhere() -> None:
     bench = face_to_face()
+    bench.send("robot2", Interrupt(retreat=True))
+    robots = MetRobots(bench, {"robot1": f"F1/{ROOM}"})
+    door = made_up().floors["F1"].doors[ROOM].posts
+    x, y = (sum(each) / 2.0 for each in zip(*door, strict=True))
+    bench.world.robots[1].stand(FloorPose("F1", x, y, 0.0))
+    while not robots.sent and not bench.of(IssueDetected):
+        robots.advance(0.5)
+    ((robot, place),) = robots.sent
+    assert robot == "robot2"
+    assert place not in (None, f"F1/{ROOM}")
+
+
+def test_nobody_says_that_an_open_door_is_shut() -> None:
+    bench = untold()
     assert [each.issue for each in bench.of(IssueDetected)] == ["blocked", "blocked"]
 
 
 def test_who_is_asked_pushes_one_aside_and_both_get_on() -> None:
-    bench = face_to_face()
+    bench = untold()
     assert bench.world.intervene(CLEAR) == ""
     for number in (1, 2):
         bench.send(f"robot{number}", Resume(execution=f"e{number}"))

@@ -1,0 +1,53 @@
+"""Looks whether robots of a site have met whenever one says that it does not get on."""
+
+import asyncio
+from collections.abc import Callable
+
+from mend.fleet.right_of_way.right_of_way import Yielding
+from mend.robots.link.messages import MakeWay, Poses
+from mend.server.background import Endless
+from mend.server.fleets.meetings import Meetings
+
+
+class MeetingWatch:
+    """Has robots that drive `told` what to do, and `met` hear of it.
+
+    The latter also of robots that rest, with the place where they are to go. `now_s`: the site's
+    clock, as far as robots tell of it.
+    """
+
+    def __init__(
+        self,
+        meetings: Meetings,
+        told: Callable[[str, MakeWay], None],
+        met: Callable[[Yielding, str | None], None],
+        now_s: Callable[[], float],
+    ) -> None:
+        self._meetings, self._told, self._met, self._now_s = meetings, told, met, now_s
+        self._news = asyncio.Event()
+
+    def take(self, robot: str, poses: Poses) -> None:
+        """A robot says where it is."""
+        if self._meetings.take(robot, poses):
+            self._news.set()
+
+    async def run(self) -> None:
+        """Until it is cancelled."""
+        watching = Endless("who makes way for whom")
+        while True:
+            await self._news.wait()
+            self._news.clear()
+            with watching.one_pass():
+                await self._resolve()
+
+    async def _resolve(self) -> None:
+        now_s, standings = self._now_s(), self._meetings.standings()
+        decided = await asyncio.to_thread(self._meetings.decide, standings, now_s)
+        if decided is None:
+            return
+        if standings[decided.robot].way:
+            for robot, told in self._meetings.told(decided, now_s):
+                self._told(robot, told)
+            self._met(decided, None)
+        elif (place := self._meetings.place_to_rest(decided, standings)) is not None:
+            self._met(decided, place)
