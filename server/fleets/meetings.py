@@ -26,6 +26,8 @@ PATIENCE_S = 1.5
 """So long robots that meet try to get past each other by themselves."""
 SPEED_M_S = 1.0
 """About as fast as robots drive."""
+THERE_M = 0.5
+"""Who stands so near to its goal is at work there, and goes nowhere."""
 ON_WAY_M = 0.6
 """Who has come off its way is no farther from it."""
 _OFF_WAY_M = 0.9
@@ -139,6 +141,8 @@ class Meetings:
         if occupation.goal is None:
             return Standing(floor, at, may_move=occupation.rests)
         way = self._way(floor, at, occupation.goal)
+        if barred is None and way and math.dist(at, way[-1]) < THERE_M:
+            return Standing(floor, at)
         return Standing(floor, at, way, barred is not None, self._stands(robot))
 
     def _way(self, floor: str, at: Point, goal: str) -> list[Point]:

@@ -104,7 +104,15 @@ def test_who_can_be_sent_nowhere_stays_there() -> None:
 
 
 def test_nobody_makes_way_for_who_is_at_work_or_gone() -> None:
-    door = Door()
-    door.occupations["bob"] = Occupation()
-    assert door.stand(bob=None)
-    assert door.meetings.decide(door.meetings.standings(), 5.0) is None
+    for occupation in (Occupation(), Occupation(goal=ROOM)):
+        door = Door()
+        door.occupations["bob"] = occupation
+        if occupation.goal is not None:
+            room = door.building.floors["F1"].places["101"]
+            x, y = room.x, room.y
+            near = door.at["ada"]
+            away_m = math.dist(near, (x, y))
+            door.at["bob"] = x, y
+            door.at["ada"] = x + 0.7 * (near[0] - x) / away_m, y + 0.7 * (near[1] - y) / away_m
+        assert door.stand(bob=None)
+        assert door.meetings.decide(door.meetings.standings(), 5.0) is None
