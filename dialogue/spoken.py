@@ -10,6 +10,11 @@ def spoken(identifier: str) -> str:
     return re.sub(r"(?<=\w)[_-](?=\w)", " ", identifier)
 
 
+def called(robots: str) -> str:
+    """What people call a robot, or those in a text: `robot2-0afba7d8` of a site is robot2."""
+    return spoken(re.sub(r"(?<=\w)-[0-9a-f]{8}\b", "", robots))
+
+
 def count_of(times: int) -> str:
     """How often: `once`, `twice`, `three times`, `12 times`."""
     if 0 <= times < 3:

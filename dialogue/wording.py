@@ -4,7 +4,7 @@ import re
 from string import Formatter
 
 from mend.dialogue.outlook import Outlook
-from mend.dialogue.spoken import spoken
+from mend.dialogue.spoken import called, spoken
 from mend.tasks.issue import Issue
 
 _GUESSES = ("guess_1", "guess_2", "guess_3")
@@ -52,7 +52,7 @@ def word(text: str, issue: Issue, outlook: Outlook) -> str:
         with_object=f" with the {spoken(issue.object)}" if issue.object else "",
         place=spoken(issue.place or issue.name),
         name=spoken(issue.name),
-        robot=spoken(issue.robot),
+        robot=called(issue.robot),
         why=_why(issue),
         attempt=f"attempt {outlook.attempt} of {outlook.attempts}",
         times=outlook.times_spoken,
@@ -66,7 +66,7 @@ def _put_in(issue: Issue) -> str:
     item = f"the {spoken(issue.item or issue.name)}"
     if issue.held_by is None:
         return f"put {item} into my basket"
-    return f"take {item} out of the basket of {spoken(issue.held_by)} and put it into mine"
+    return f"take {item} out of the basket of {called(issue.held_by)} and put it into mine"
 
 
 def sentence(clause: str) -> str:
@@ -88,4 +88,4 @@ def _why(issue: Issue) -> str:
     if issue.object:
         named = rf"(?<!the )(?<!a )\b{re.escape(issue.object)}\b"
         reason = re.sub(named, f"the {issue.object}", reason)
-    return f" {sentence(spoken(reason))}" if reason else ""
+    return f" {sentence(called(reason))}" if reason else ""

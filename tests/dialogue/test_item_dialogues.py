@@ -74,6 +74,8 @@ def test_what_is_in_the_basket_of_another_robot_is_asked_for_there() -> None:
         "I have come to F1 101 to collect the mail. Will you do that?"
     )
     assert "take the post bag out of the basket of robot 2 and put it into mine" in ask.yes_effect
+    of_a_site = conversation("item_not_given", held_by="robot2-0afba7d8")
+    assert "out of the basket of robot2 and put" in asked(list(of_a_site.open())).text
     assert "I wait until I feel something new in my basket." in said(list(talk.answer("yes")))
 
 

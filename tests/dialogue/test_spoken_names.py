@@ -1,0 +1,30 @@
+"""Names and counts as people say them."""
+
+import pytest
+
+from mend.dialogue.spoken import called, count_of, spoken
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("robot2-0afba7d8", "robot2"),
+        ("robot_2", "robot 2"),
+        ("robot2-0afba7d8 has failed, and stands there", "robot2 has failed, and stands there"),
+        ("the deadbeef-12", "the deadbeef 12"),
+    ],
+)
+def test_robots_of_a_site_are_called_by_the_names_of_their_scene(name: str, said: str) -> None:
+    assert called(name) == said
+
+
+def test_identifiers_are_said_as_words() -> None:
+    assert spoken("sugar_bowl") == "sugar bowl"
+    assert spoken("part-12345678") == "part 12345678"
+    assert [count_of(each) for each in (0, 1, 2, 3, 12)] == [
+        "never",
+        "once",
+        "twice",
+        "three times",
+        "12 times",
+    ]
