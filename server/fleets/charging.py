@@ -14,7 +14,8 @@ BUSY_BELOW = 0.2
 LEAVES_AT = 0.5
 """Who is to do something leaves its charger once it holds as much."""
 
-
+LOOKS_AGAIN_S = 10.0
+"""So often it is looked whether who charges and holds enough has something to do by then."""
 AGAIN_S = 600.0
 """Who could not charge, or had something to do instead, does not try again for so long."""
 
@@ -34,6 +35,7 @@ class Charging:
     ) -> None:
         self._dispatcher, self._battery, self._reachable = dispatcher, battery, reachable
         self._again_s: dict[str, float] = {}
+        self._looks_s: dict[str, float] = {}
 
     def to_send(self, free: Iterable[str], now_s: float) -> list[tuple[str, str]]:
         """Which of the robots that nobody has now are to go to which charger."""
@@ -56,6 +58,13 @@ class Charging:
             return []
         due = {leg.robot for leg in self._dispatcher.legs_to_begin(now_s)}
         return [errand for errand in charged if errand.robot in due]
+
+    def may_leave(self, robot: str, share: float | None, now_s: float) -> bool:
+        """Whether it is time to look if a robot that charges has enough; now and then, if so."""
+        if (share or 0.0) < LEAVES_AT or now_s < self._looks_s.get(robot, 0.0):
+            return False
+        self._looks_s[robot] = now_s + LOOKS_AGAIN_S
+        return True
 
     def could_not(self, robot: str, now_s: float) -> None:
         """It has not charged until it was full."""

@@ -17,6 +17,7 @@ from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd, LegOutcome
 from mend.fleet.requests import RequestKind
 from mend.fleet.right_of_way.right_of_way import Yielding
+from mend.robots.link.messages import Poses
 from mend.server.access.principal import RESERVED
 from mend.server.background import Endless
 from mend.server.fleets.alarms import Alarms
@@ -101,7 +102,7 @@ class FleetAtWork:
         self._found_ways = FoundWays(dispatcher, self.closed_ways)
         self._charging = Charging(dispatcher, site.battery, places.names)
         meetings = Meetings(dispatcher.building, site.frames, places.names, self._occupation)
-        self.meeting_watch = MeetingWatch(
+        self._meeting_watch = MeetingWatch(
             meetings, site.make_way, self._have_met, lambda: self.shown_s
         )
         self._behaviors = load_plugins("mend.behaviors")
@@ -125,7 +126,7 @@ class FleetAtWork:
         self._site.hear_of_ways(OTHERS_S)
         self._changed.set()
         loops = {"fleet of": self._work, "findings at": self._hear}
-        loops["meetings at"] = self.meeting_watch.run
+        loops["meetings at"] = self._meeting_watch.run
         self._running = [
             asyncio.create_task(loop(), name=f"{what} {self._site.id}")
             for what, loop in loops.items()
@@ -278,6 +279,14 @@ class FleetAtWork:
         finding = found.finding.replace("_", " ")
         told = f"found of the way between {a} and {b}: {finding}"
         self._noted.append(self._news.told(told, finder=found.by))
+
+    def saw(self, robot: str, poses: Poses) -> None:
+        """A robot says where it is, by the site's clock."""
+        self._meeting_watch.take(robot, poses)
+        errand = self._errands.going.get(robot)
+        charges = errand is not None and errand.charges
+        if charges and self._charging.may_leave(robot, poses.battery, poses.time):
+            self._changed.set()
 
     def _have_met(self, decided: Yielding, place: str | None) -> None:
         """A robot makes way for another one; `place`: where it is to go for that, if it rests."""

@@ -142,13 +142,13 @@ class Fleets:
         last = await self._poses.last(site.id)
         record = self._poses.record(site.id)
         if record is None:
-            return fleet.meeting_watch.take
+            return fleet.saw
         since_s = -math.inf if last is None else time_of(last)
         track = FleetTrack(site.frames, record, since_s)
 
         def take(robot: str, poses: Poses) -> None:
             track.take(robot, poses)
-            fleet.meeting_watch.take(robot, poses)
+            fleet.saw(robot, poses)
 
         return take
 

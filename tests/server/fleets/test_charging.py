@@ -22,6 +22,7 @@ from mend.maps.building.building import (
     Lane,
     PlaceKind,
 )
+from mend.robots.link.messages import IDENTITY, Poses
 from mend.server.fleets.charging import BUSY_BELOW, IDLE_BELOW, LEAVES_AT, who_charges
 from mend.server.fleets.fleet_at_work import FleetAtWork
 from mend.server.fleets.place_names import PlaceNames
@@ -174,6 +175,22 @@ async def test_who_holds_enough_leaves_for_what_is_to_be_done(share: float) -> N
         going_on = await work.runs.nth(2)
         assert at_charger.ended.result() == ("aborted", False)
         assert (going_on.behavior, going_on.parameters["place"]) == ("go_to", "c")
+
+
+async def test_the_only_robot_leaves_its_charger_for_what_has_become_due_meanwhile() -> None:
+    async with charging("b") as work:
+        work.site.batteries["r0"] = 0.3
+        work.fleet.start()
+        at_charger = await work.runs.nth(1)
+        await work.fleet.submit(visit(place="c"), None)
+        await until(lambda: bool(work.fleet.dispatcher.fleet.stops()["r0"]))
+        for time_s, share in ((5.0, LEAVES_AT - 0.01), (6.0, LEAVES_AT)):
+            assert not at_charger.ended.done()
+            work.site.batteries["r0"] = share
+            said = Poses(time=time_s, tool=IDENTITY, opening_m=0.0, battery=share)
+            work.fleet.saw("r0", said)
+            await asyncio.sleep(0)
+        assert (await work.runs.nth(2)).parameters["place"] == "c"
 
 
 async def test_who_could_not_charge_does_not_try_it_again_at_once() -> None:
