@@ -92,11 +92,11 @@ class LegExecution:
         try:
             return await self._stages(at_once=at_once)
         except RefusalError as error:
-            return LegEnd(outcome=LegOutcome.FAILED, reason=str(error)[:_LONGEST])
+            return self._failed(str(error)[:_LONGEST])
         except Exception:
             # Nobody waits for it but the dispatcher, which would wait for ever.
             log.exception("a leg of %s could not be carried out", self._leg.robot)
-            return LegEnd(outcome=LegOutcome.FAILED, reason="a fault of Mend's own; see its log")
+            return self._failed("a fault of Mend's own; see its log")
 
     async def _stages(self, *, at_once: bool) -> LegEnd:
         leg, place = self._leg, self._places.in_scene(self._leg.place)
@@ -157,7 +157,10 @@ class LegExecution:
         if self._broken_off:
             return LegEnd(outcome=LegOutcome.WITHDRAWN, at=self._at())
         said = run.result.reason if run.result is not None else str(run.status)
-        return LegEnd(outcome=LegOutcome.FAILED, reason=said[:_LONGEST], at=self._at())
+        return self._failed(said[:_LONGEST])
+
+    def _failed(self, reason: str) -> LegEnd:
+        return LegEnd(outcome=LegOutcome.FAILED, reason=reason, at=self._at())
 
     def _at(self) -> str | None:
         """The place that the robot is nearest to, as far as it has said where it is."""

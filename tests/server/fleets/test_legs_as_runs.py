@@ -509,9 +509,13 @@ async def test_a_fault_within_ends_the_leg_and_not_the_fleet(
 
     async with working("a") as work:
         monkeypatch.setattr(work.runs, "start_run_of", broken)
+        work.site.standing["r0"] = (1.0, 0.0, 0.0)
         await work.fleet.submit(visit(), None)
         await work.until("visit", RequestStatus.FAILED)
         reason = await work.fleet.read(lambda all_: all_.view("visit").reason)
+        events = await work.journal.read(0, 1000)
+    stood = {each.at for each in events if isinstance(each, ev.LegEnded)}
+    assert stood == {"f/a"}, "it has never set out"
     assert "a fault of Mend's own" in (reason or "")
     assert "could not be carried out" in caplog.text
 
