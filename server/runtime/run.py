@@ -10,7 +10,6 @@ import logging
 import math
 from functools import partial
 from typing import Any
-from uuid import uuid4
 
 from mend.errors import ConflictError, RefusalError
 from mend.robots.link.messages import (
@@ -20,19 +19,16 @@ from mend.robots.link.messages import (
     Holding,
     Intervened,
     IssueDetected,
-    Location,
     Looked,
     Poses,
     Rejected,
     Report,
     Resumed,
     StepStarted,
-    WasDone,
 )
 from mend.server.errors import BusyError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import DuplicateReceiptError, JournalWriteError, Receipt
-from mend.server.runtime.choosing import choose
 from mend.server.runtime.claims import Claims
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.cutting_short import CuttingShort
@@ -47,9 +43,10 @@ from mend.server.runtime.people import People
 from mend.server.runtime.pose_sink import PoseSink
 from mend.server.runtime.presence import RobotPresence
 from mend.server.runtime.report_events import ReportEvents
-from mend.server.runtime.results import Results, missing_parts, results_of, unseen_parts
+from mend.server.runtime.results import Results, results_of
+from mend.server.runtime.robot_patience import RobotPatience
 from mend.server.runtime.robot_proxy import JUDGING, Purpose, RobotActivity, RobotProxy
-from mend.server.runtime.run_state import StartedExecution
+from mend.server.runtime.task_allocation import TaskAllocation
 from mend.server.runtime.team import Team
 from mend.server.runtime.views import RunStatus
 from mend.tasks.definition import BehaviorNode
@@ -84,6 +81,11 @@ class Run:
         self._claims = Claims(context)
         self._interventions = Interventions(context)
         self._inbox = Inbox()
+        cutting_short = CuttingShort(context, proxies, dialogues, self._reports)
+        self._results = Results(context, self._reports, cutting_short)
+        self._allocation = TaskAllocation(
+            context, proxies, self._team, self._people, self._reports, self._results
+        )
         self._presence = RobotPresence(
             context,
             proxies,
@@ -93,16 +95,13 @@ class Run:
             self._interventions,
             poses,
             tell=self._inbox.tell,
-            start=self._start,
+            start=self._allocation.start,
         )
-        cutting_short = CuttingShort(context, proxies, dialogues, self._reports)
-        self._results = Results(context, self._reports, cutting_short)
+        self._patience = RobotPatience(context, hardware, self._presence)
         self._giving_up = GivingUp(context, proxies, self._reports, cutting_short)
         self.ended = asyncio.Event()
         self._aborting = False
         self._settled_s = -math.inf
-        self._looked_last: set[str] = set()
-        """The robots that have looked since the task was done."""
 
     @property
     def context(self) -> RunContext:
@@ -191,22 +190,11 @@ class Run:
         due = None if self._hardware.simulated else self._dialogues.next_due(self._settled_s)
         if self._context.state.status is RunStatus.RUNNING:
             dues = [due, None if self._hardware.simulated else self._people.next_due()]
-            dues = [*dues, *(self._silent_too_long_at(each) for each in self._proxies.values())]
+            dues += [self._patience.silent_too_long_at(each) for each in self._proxies.values()]
             now = self._context.clock.now()
             waits += [max(0.0, each - now) for each in dues if each is not None]
         timeout_s = min((each for each in waits if each is not None), default=None)
         return await self._inbox.next(timeout_s)
-
-    def _silent_too_long_at(self, proxy: RobotProxy) -> float | None:
-        """When a robot has said nothing for too long of what it was told (the run's clock).
-
-        A simulated one is watched by its process, and its world's clock stands still without it.
-        """
-        if self._hardware.simulated or not proxy.owes_a_report:
-            return None
-        if proxy.silent_since is None:
-            proxy.silent_since = self._context.clock.now()
-        return proxy.silent_since + self._context.settings.robot_silent_timeout_s
 
     async def _carry_out(self, item: Item) -> None:
         try:
@@ -322,7 +310,7 @@ class Run:
 
     async def _looked(self, proxy: RobotProxy, purpose: Purpose, fulfilled: bool) -> None:
         if purpose is Purpose.LAST:
-            self._looked_last.add(proxy.robot)
+            self._allocation.looked_last(proxy.robot)
             return
         dialogue = self._dialogue_of(proxy)
         if dialogue is not None:
@@ -356,7 +344,10 @@ class Run:
         results = [*results_of(state), *self._people.results()]
         for proxy in self._proxies.values():
             proxy.finished = results
-            if await self._gave_up_in_livelock(proxy) or await self._gave_up_as_silent(proxy):
+            asks = self._dialogue_of(proxy) is not None
+            if await self._patience.gave_up_in_livelock(proxy, asks=asks):
+                return True
+            if await self._patience.gave_up_as_silent(proxy):
                 return True
         for dialogue in state.open_dialogues:
             if await self._dialogues.drive(dialogue, self._proxies[dialogue.opened.robot]):
@@ -365,151 +356,11 @@ class Run:
             return True
         for proxy in self._proxies.values():
             available = (proxy.free or proxy.interruptible) and not proxy.gone_for_good
-            if available and self._dialogue_of(proxy) is None and await self._occupy(proxy):
+            if not available or self._dialogue_of(proxy) is not None:
+                continue
+            if await self._allocation.occupy(proxy):
                 return True
         return False
-
-    async def _gave_up_in_livelock(self, proxy: RobotProxy) -> bool:
-        """Give an idle robot up if nothing ever comes of what it is told; whether it did."""
-        asks = self._dialogue_of(proxy) is not None
-        proxy.livelock.see(
-            self._context.state.progress, self._context.clock.now() if asks else None
-        )
-        idle = (proxy.free or proxy.interruptible) and not proxy.gone_for_good
-        if not idle or not proxy.livelock.lasts:
-            return False
-        await self._presence.give_up_in_livelock(proxy)
-        return True
-
-    async def _gave_up_as_silent(self, proxy: RobotProxy) -> bool:
-        """Give a robot up that says nothing of what it was told; whether it did.
-
-        Of one that was given up before nobody waits any longer to hear that its arm rests.
-        """
-        due = self._silent_too_long_at(proxy)
-        if due is None or self._context.clock.now() < due:
-            return False
-        if proxy.gone_for_good:
-            proxy.doing = RobotActivity.IDLE
-            return True
-        timeout_s = self._context.settings.robot_silent_timeout_s
-        await self._presence.give_up(
-            proxy, f"is given up: for {timeout_s:g} s it has said nothing of what it was told"
-        )
-        return True
-
-    async def _occupy(self, proxy: RobotProxy) -> bool:
-        """Give an idle robot something to do; True if that changed the state."""
-        state = self._context.state
-        execution = state.executions.get(proxy.robot)
-        if execution is not None:
-            if execution.held and self._may_resume(proxy, execution):
-                leaf = state.tree.leaf_definition(execution.leaf)
-                proxy.resume(execution, self._team.expected_at(proxy, leaf))
-            elif execution.held and not proxy.looked_just_now(self._context.clock.now()):
-                proxy.look(Purpose.RESUME)
-            return False
-        if proxy.holds_execution:
-            proxy.retreat()
-            return False
-        if state.tree.done(0):
-            return not state.executions and await self._look_last(proxy)
-        self._looked_last.clear()
-        return await self._start_something(proxy)
-
-    def _may_resume(self, proxy: RobotProxy, execution: StartedExecution) -> bool:
-        """Whether it has just looked, and has the space or can have it."""
-        if not proxy.looked_just_now(self._context.clock.now()):
-            return False
-        leaf = self._context.state.tree.leaf_definition(execution.leaf)
-        if not self._team.may_begin(proxy, leaf):
-            return False
-        self._team.take(proxy, leaf)
-        return True
-
-    async def _start_something(self, proxy: RobotProxy) -> bool:
-        state = self._context.state
-        choice = choose(state, proxy)
-        if choice is None:
-            if proxy.area is not None:
-                # Nothing that it could do is free: it is not to be in the way of others meanwhile.
-                proxy.retreat()
-            else:
-                self._people.watch(proxy)
-            return False
-        if not proxy.looked_just_now(self._context.clock.now()):
-            proxy.look(Purpose.CHOOSE)
-            return False
-        assert proxy.hello is not None, "a free robot has said hello"
-        execution = StartedExecution(uuid4(), choice.leaf, proxy.robot, proxy.hello.boot)
-        started = ev.NodeStarted(
-            **self._context.stamp(),
-            **self._reports.node(choice.leaf),
-            robot=proxy.robot,
-            boot=proxy.hello.boot,
-            execution=execution.id,
-            attempt=state.tree.attempts(choice.leaf) + 1,
-            candidates=choice.candidates,
-        )
-        said = state.to_leave_out.get(choice.leaf)
-        if said is not None:
-            stamp = {**self._context.stamp(), "seq": 0, "robot": proxy.robot}
-            await self._context.commit([started, said.model_copy(update=stamp)])
-            return True
-        await self._context.commit([started])
-        self._start(proxy, execution)
-        return True
-
-    def _start(self, proxy: RobotProxy, execution: StartedExecution) -> None:
-        state = self._context.state
-        taken_back = state.taken_back.get(execution.leaf)
-        was_done: WasDone | None = None
-        if taken_back is not None:
-            gone = taken_back.because_of is None and not taken_back.unseen
-            was_done = "gone" if gone else "there"
-        tree, scene = state.tree, state.scene
-        self._team.take(proxy, tree.leaf_definition(execution.leaf))
-        part = scene.objects.get(tree.leaf_definition(execution.leaf).object or "")
-        place = scene.places.get(tree.leaf_definition(execution.leaf).place or "")
-        proxy.start(
-            execution,
-            node=tree.path_of(execution.leaf),
-            behavior=tree.leaf_definition(execution.leaf).behavior,
-            parameters=dict(tree.leaf_definition(execution.leaf).parameters),
-            size=part.size if part else None,
-            target=Location(**place.pose.model_dump()) if place else None,
-            was_done=was_done,
-            finished=[
-                each for each, leaf in results_of(state).items() if leaf not in state.left_out
-            ],
-            object_at=self._team.expected_at(proxy, tree.leaf_definition(execution.leaf)),
-        )
-
-    # --- The end ------------------------------------------------------------------------------
-
-    async def _look_last(self, proxy: RobotProxy) -> bool:
-        """Have every robot look that can, each at what it sees; True if that changed the state."""
-        if proxy.robot not in self._looked_last:
-            proxy.look(Purpose.LAST)
-            return False
-        looking = (each.doing is RobotActivity.LOOKING for each in self._proxies.values())
-        if any(looking):
-            return False
-        await self._finish(proxy)
-        return True
-
-    async def _finish(self, proxy: RobotProxy) -> None:
-        """End the run, unless of those who looked nobody has seen the table."""
-        state = self._context.state
-        looked = [each for each in self._proxies.values() if each.robot in self._looked_last]
-        if proxy.blind is not None and all(each.blind is not None for each in looked):
-            await self._results.doubt_last(proxy, proxy.blind)
-        if not state.tree.done(0):
-            return
-        there = {each for other in self._proxies.values() for each in other.there}
-        missing, unseen = missing_parts(state), unseen_parts(state, there)
-        finished = ev.RunFinished(**self._context.stamp(), missing=missing, unseen=unseen)
-        await self._context.commit([finished])
 
     # --- What people ask for ------------------------------------------------------------------
 
@@ -533,8 +384,7 @@ class Run:
         """Go on. Raises `ConflictError` unless paused."""
         self._require(RunStatus.PAUSED, "resume")
         self._context.clock.resume()
-        # Who knows what was done meanwhile.
-        self._looked_last.clear()
+        self._allocation.look_anew()
         await self._context.commit([ev.RunResumed(**self._context.stamp(), author=author)])
 
     async def abort(self, reason: str = "", author: ev.Author | None = None) -> None:

@@ -313,7 +313,7 @@ async def test_a_fault_of_ours_fails_the_run_instead_of_hanging_it(
     def broken(*_: object) -> None:
         raise RuntimeError("no such thing")
 
-    monkeypatch.setattr("mend.server.runtime.run.choose", broken)
+    monkeypatch.setattr("mend.server.runtime.task_allocation.choose", broken)
     async with pretend_service(TWO_PARTS) as service:
         view, events = await asyncio.wait_for(service.run_to_end(), timeout=60)
     assert view.status is RunStatus.FAILED
