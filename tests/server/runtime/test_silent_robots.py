@@ -74,12 +74,12 @@ async def test_no_time_passes_while_the_run_is_paused() -> None:
         await service.runtime.pause(run)
         actor = service.runtime._runs[run]
         proxy = actor.proxies["arm"]
-        at = actor._silent_too_long_at(proxy)
+        at = actor._patience.silent_too_long_at(proxy)
         before = actor.context.clock.now()
         await asyncio.sleep(0)
         assert actor.context.clock.now() == before
         assert at is not None
-        assert at == actor._silent_too_long_at(proxy)
+        assert at == actor._patience.silent_too_long_at(proxy)
     journal.close()
 
 
