@@ -80,6 +80,8 @@ class Base(Effector[BaseBody]):
         self.at_rest = True
         self.made_way: MadeWay | None = None
         """What it was last told to do about another robot that it has met."""
+        self.may_stand_aside = False
+        """Whether it could make way although it does not drive."""
         self.failed: Mapping[str, tuple[float, float, float]] = {}
         """Where robots stand that work no more, as it was told (base frame)."""
         self._speed = 1.0

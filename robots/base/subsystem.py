@@ -186,8 +186,8 @@ class BaseSubsystem:
         covariance = None if known is None else list(known)
         battery = self.effector.battery
         share = None if battery.endless else battery.share
-        following = self.effector.following
-        barred = None if following is None else following.barred
+        following, waits = self.effector.following, self.effector.may_stand_aside
+        barred = following.barred if following is not None else False if waits else None
         shown = {"base": base, "covariance": covariance, "battery": share, "barred": barred}
         return poses.model_copy(update=shown)
 

@@ -45,7 +45,7 @@ class MeetingWatch:
         decided = await asyncio.to_thread(self._meetings.decide, standings, now_s)
         if decided is None:
             return
-        if standings[decided.robot].way:
+        if not self._meetings.rests(decided.robot):
             for robot, told in self._meetings.told(decided, now_s):
                 self._told(robot, told)
             self._met(decided, None)

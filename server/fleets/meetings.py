@@ -27,7 +27,7 @@ PATIENCE_S = 1.5
 SPEED_M_S = 1.0
 """About as fast as robots drive."""
 THERE_M = 0.5
-"""Who stands so near to its goal is at work there, and goes nowhere."""
+"""Who stands so near to where it goes next is at work there, or waits for an elevator."""
 ON_WAY_M = 0.6
 """Who has come off its way is no farther from it."""
 _OFF_WAY_M = 0.9
@@ -104,6 +104,10 @@ class Meetings:
             (decided.other, self._told(decided.other, decided.robot, [], z, left_s)),
         ]
 
+    def rests(self, robot: str) -> bool:
+        """Whether it has nothing to do, so that it is sent elsewhere to make way."""
+        return self._occupation(robot).rests
+
     def place_to_rest(self, decided: Yielding, standings: Standings) -> str | None:
         """Where a robot goes that rests where another one comes: near its bay, and free.
 
@@ -141,8 +145,8 @@ class Meetings:
         if occupation.goal is None:
             return Standing(floor, at, may_move=occupation.rests)
         way = self._way(floor, at, occupation.goal)
-        if barred is None and way and math.dist(at, way[-1]) < THERE_M:
-            return Standing(floor, at)
+        if not barred and way and math.dist(at, way[-1]) < THERE_M:
+            return Standing(floor, at, may_move=barred is not None)
         return Standing(floor, at, way, barred is not None, self._stands(robot))
 
     def _way(self, floor: str, at: Point, goal: str) -> list[Point]:

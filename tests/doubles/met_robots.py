@@ -43,7 +43,7 @@ class MetRobots:
         decided = self._meetings.decide(standings, now_s)
         if decided is None:
             return
-        if not standings[decided.robot].way:
+        if self._meetings.rests(decided.robot):
             self.sent.append((decided.robot, self._meetings.place_to_rest(decided, standings)))
             return
         for robot, told in self._meetings.told(decided, now_s):

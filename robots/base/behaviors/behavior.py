@@ -164,6 +164,8 @@ class BaseBehavior(Behavior):
 
 LEADS = 0.6
 """So much of its best speed a base drives that somebody on foot follows."""
+QUEUES_M = 1.5
+"""So near to where it would wait for an elevator it does if others wait there already."""
 
 
 def steps_of_ride(ride: Ride, leads: str | None = None) -> list[BaseStep]:
@@ -172,7 +174,7 @@ def steps_of_ride(ride: Ride, leads: str | None = None) -> list[BaseStep]:
     steps: list[BaseStep] = []
     if ride.wait_at is not None:
         steps += [
-            _drive(f"go to {name}", ride.wait_at, leads),
+            _drive(f"go to {name}", ride.wait_at, leads, QUEUES_M),
             GetIn(f"get into {name}", ride, leads),
         ]
     return [*steps, RideUntilThere(f"ride to {ride.to_floor}", ride, leads)]

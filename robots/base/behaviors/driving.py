@@ -75,21 +75,40 @@ class Driving:
 
     def _make_way(self, drive: Drive, made: MadeWay) -> Routine[None]:
         """Make way for another robot, or let it make way; people are asked for nothing then."""
-        base, progress = self._base, self._progress
-        now_s, here = base.body.time_s, base.body.pose()
-        if now_s() >= made.until_s or abs(here.z - made.z) >= ON_FLOOR_M:
-            base.made_way = None
+        progress = self._progress
+        if not self._is_for_now(made):
+            self._base.made_way = None
             return
         progress.blocked_since_s, progress.stalled_s = None, 0.0
         if not made.way:
             return
+        yield from self._stand_aside(made, lambda: False)
+        self._begin(drive)
+
+    def stand_aside(self, no_more: Callable[[], bool]) -> Routine[None]:
+        """Make way while it waits for something, if it was told to, until there is `no_more` reason
+        to wait. Raises `Interruption`.
+        """
+        base, made = self._base, self._base.made_way
+        if made is None or not made.way or not self._is_for_now(made):
+            return
+        yield from self._stand_aside(made, no_more)
+        base.stop()
+        yield from self._watched(base.settle())
+
+    def _stand_aside(self, made: MadeWay, no_more: Callable[[], bool]) -> Routine[None]:
+        base = self._base
         base.made_way = None
         base.start_along(made.way)
-        while now_s() < made.until_s and base.following is not None and not base.jumps():
+        while base.body.time_s() < made.until_s and not base.jumps() and not no_more():
             base.drive_on()
             self._watch.check_if_due()
             yield
-        self._begin(drive)
+
+    def _is_for_now(self, made: MadeWay) -> bool:
+        """Whether it is for this floor, and not too late."""
+        here, now_s = self._base.body.pose(), self._base.body.time_s()
+        return now_s < made.until_s and abs(here.z - made.z) < ON_FLOOR_M
 
     def _is_kept_off(self, drive: Drive) -> bool:
         """Whether it is near enough, and something that is no door has barred its way for long."""

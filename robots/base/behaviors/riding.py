@@ -129,9 +129,15 @@ class Riding:
         self, ride: Ride, *, aboard: bool, until: Callable[[], bool], stay_open: bool = False
     ) -> Routine[None]:
         wait = self._progress.wait = Wait(ride, aboard, self._base.body.time_s())
-        while not until():
-            wait.was_shut |= aboard and not self._base.sees_out()
-            self._base.elevators.ask(ride, stay_open=stay_open)
-            self._watch.check_if_due()
-            yield
+        self._base.may_stand_aside = not aboard
+        try:
+            while not until():
+                if not aboard:
+                    yield from self._driving.stand_aside(until)
+                wait.was_shut |= aboard and not self._base.sees_out()
+                self._base.elevators.ask(ride, stay_open=stay_open)
+                self._watch.check_if_due()
+                yield
+        finally:
+            self._base.may_stand_aside = False
         self._progress.wait = None

@@ -110,9 +110,9 @@ class Poses(Message):
     the ground of the scene; all other poses are in the base frame. `covariance`: how sure it is of
     that, as the variances and the covariance xx, xy, yy of its place along the axes of its map
     (m2); None where it does not say. `battery`: what its battery holds, as a share of what it can;
-    None where it does not run out. `barred`: whether what it sees leaves it no way on; None while
-    it is not driving. `tool`: the tool point (x the approach direction, y the
-    opening direction of the fingers).
+    None where it does not run out. `barred`: whether it drives and what it sees leaves it no way
+    on; None while it could not make way for anybody. `tool`: the tool point (x the approach
+    direction, y the opening direction of the fingers).
     """
 
     type: Literal["poses"] = "poses"
