@@ -19,6 +19,9 @@ Circle = tuple[float, float, float]
 Point = tuple[float, float]
 Matrix = NDArray[np.float64]
 
+_AHEAD_S = 0.3
+"""A door sees so far ahead who comes by, beside what they need to stop."""
+
 
 class Rider(Protocol):
     """Who may ride in a cabin: a robot, or a person with one."""
@@ -124,6 +127,7 @@ class ElevatorBank:
             with_them = (led[each] for each in inside if each in led)
             riders += [each for each in with_them if self._is_inside(cabin, each)]
             free = self._is_door_free(cabin, riders, circles)
+            free = free and not any(self._comes_by(cabin, each) for each in robots)
             cabin.pass_time(time_s, inside, door_is_free=free)
             for rider in riders:
                 self._take_along(cabin, rider, before)
@@ -172,6 +176,16 @@ class ElevatorBank:
             math.dist((x, y), each[:2]) < CORNER_M + each[2] for each in circles(cabin.floor)
         )
         return within <= len(riders) and not any(each.moving for each in riders)
+
+    def _comes_by(self, cabin: Cabin, robot: BuildingRobot) -> bool:
+        """Whether a robot drives so near by that it could not stop before a door that shuts."""
+        if robot.at.floor != cabin.floor or not robot.moving:
+            return False
+        speed_m_s = robot.velocity().speed_m_s
+        stops_m = speed_m_s**2 / (2.0 * robot.limits.acceleration_m_s2) + _AHEAD_S * speed_m_s
+        stop = self._stops[cabin.name][cabin.floor]
+        away_m = math.dist(stop, (robot.at.x, robot.at.y))
+        return away_m < CORNER_M + robot.radius_m + stops_m
 
     # --- Who wants what -----------------------------------------------------------------------
 

@@ -36,7 +36,7 @@ class Lasers:
             return kept
         at = robot.at
         ranges = laser.ranges_m(
-            self._space.segments(at.floor),
+            self._space.seen_by_lasers(at.floor),
             self._crowd.circles(at.floor, robot),
             at.x,
             at.y,

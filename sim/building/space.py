@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from mend.maps.building.building import Building
 from mend.maps.building.clearance import clearance_m, distances_m
 from mend.maps.building.crossing import crossed_by
+from mend.maps.building.wall_ends import wall_ends
 from mend.sim.building.barriers import Barriers
 from mend.sim.building.building_robot import BuildingRobot
 from mend.sim.building.bystander import RADIUS_M as PERSON_RADIUS_M
@@ -21,6 +22,8 @@ from mend.sim.building.social_force import KEEP_M
 Matrix = NDArray[np.float64]
 
 _BESIDE_M, _DIRECTIONS = (1.0, 1.3, 1.6), 16
+_WALL_M = 0.08
+"""So thick is a wall where it ends."""
 _OFF_LANES_M = 0.8
 """So far from a place, and from lanes where there is room, stands who waits for a robot."""
 
@@ -39,6 +42,7 @@ class Space:
     ) -> None:
         self._building, self._doors, self._barriers = building, doors, barriers
         self._elevators, self._furniture, self._crowd = elevators, furniture, crowd
+        self._ends: dict[str, Matrix] = {}
 
     def segments(self, floor: str) -> Matrix:
         """Walls, shut doors, cabins, furniture and barriers (n, 4)."""
@@ -54,6 +58,15 @@ class Space:
                 self._barriers.segments(floor),
             ]
         )
+
+    def seen_by_lasers(self, floor: str) -> Matrix:
+        """The same, and the ends of walls: who stands in line with a wall sees how thick it is."""
+        if floor not in self._building.floors:
+            return self.segments(floor)
+        if floor not in self._ends:
+            walls = self._building.floors[floor].wall_segments
+            self._ends[floor] = wall_ends(walls, _WALL_M)
+        return np.vstack([self.segments(floor), self._ends[floor]])
 
     def touches(self, at: FloorPose, radius_m: float, but: BuildingRobot | None = None) -> bool:
         """Whether something round would touch anything there."""

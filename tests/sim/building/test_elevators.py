@@ -9,8 +9,9 @@ import pytest
 from building_bench import BuildingBench, made_up
 
 from mend.maps.building.building import Building, BuildingDocument, Caller
-from mend.maps.building.cabin import cabin_walls, stop_of
+from mend.maps.building.cabin import CORNER_M, cabin_walls, stop_of
 from mend.maps.building.clearance import distances_m
+from mend.robots.base.body import Velocity
 from mend.robots.link.messages import (
     Finished,
     Interrupt,
@@ -155,6 +156,23 @@ def test_a_cabin_shuts_on_nobody_who_stands_at_its_corner(turn: int) -> None:
     if cabin.state is not CabinState.OPEN:
         at = np.array([[robot.at.x, robot.at.y]])
         assert distances_m(at, cabin_walls((x, y)))[0] >= robot.radius_m
+
+
+@pytest.mark.parametrize(("speed_m_s", "state"), [(1.0, CabinState.OPEN), (0.0, CabinState.SHUT)])
+def test_a_cabin_shuts_on_nobody_who_drives_by_too_fast_to_stop(
+    speed_m_s: float, state: CabinState
+) -> None:
+    bench = BuildingBench(office(Caller.ROBOTS))
+    elevators, robot = bench.world.elevators, bench.world.robots[0]
+    cabin, (x, y) = elevators.cabins["lift1"], stop_of(called_by(Caller.ROBOTS), "lift1", "F1")
+    cabin.floor, cabin.state = "F1", CabinState.OPEN
+    cabin.call(7, "F2", "F1")
+    robot.stand(FloorPose("F1", x - CORNER_M - robot.radius_m - 0.4, y, 0.0))
+    robot.move(Velocity(speed_m_s, 0.0, 0.0))
+    for _ in range(40):
+        robot.next_pose()
+    elevators.pass_time(5.0, [robot], {}, lambda _: [])
+    assert cabin.state is state
 
 
 def test_who_gives_up_wants_the_elevator_no_more() -> None:
