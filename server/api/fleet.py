@@ -75,7 +75,7 @@ async def take_robot_out(
     caller: WithCaller,
 ) -> None:
     """Have a robot break off what it does and do nothing more; others fetch what it has."""
-    await (await services.fleets.fleet(site)).take_out(robot, why.reason, caller.author)
+    await (await services.fleets.fleet(site)).operators.take_out(robot, why.reason, caller.author)
 
 
 @router.post(
@@ -88,7 +88,7 @@ async def put_robot_back(
     site: SiteId, robot: FleetRobotName, services: WithServices, caller: WithCaller
 ) -> None:
     """Have a robot work again, from where it stands."""
-    await (await services.fleets.fleet(site)).put_back(robot, caller.author)
+    await (await services.fleets.fleet(site)).operators.put_back(robot, caller.author)
 
 
 @router.post(
@@ -105,7 +105,7 @@ async def send_robot(
     caller: WithCaller,
 ) -> None:
     """Have a robot that is at no leg go to a place; refused while it is, or is not there."""
-    await (await services.fleets.fleet(site)).send(robot, to.place, caller.author)
+    await (await services.fleets.fleet(site)).operators.send(robot, to.place, caller.author)
 
 
 @router.post(
@@ -123,4 +123,4 @@ async def tell_of_way(
     caller: WithCaller,
 ) -> None:
     """Say that a way between neighbouring places is blocked, a door closed, or open again."""
-    await (await services.fleets.fleet(site)).found(found, caller.author)
+    await (await services.fleets.fleet(site)).operators.found(found, caller.author)

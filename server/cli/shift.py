@@ -200,11 +200,11 @@ class _Failing:
                 if self._fleet.now_s >= until_s:
                     raise ConflictError("no robot fails: none was on its way with anything")
                 await self._fleet.wait_until(self._fleet.now_s + _LOOKS_EVERY_S)
-        await self._fleet.take_out(self._robot, self._reason, local_author())
+        await self._fleet.operators.take_out(self._robot, self._reason, local_author())
 
     async def end(self) -> None:
         if self._robot is not None:
-            await self._fleet.put_back(self._robot, local_author())
+            await self._fleet.operators.put_back(self._robot, local_author())
 
 
 def who_brings(dispatcher: "Dispatcher") -> str | None:

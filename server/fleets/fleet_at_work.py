@@ -2,44 +2,41 @@
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Callable, Mapping
-from contextlib import asynccontextmanager
+from collections.abc import Callable, Mapping
 from datetime import datetime
 from functools import cached_property, partial
 from typing import Literal, TypeVar
 from uuid import UUID
 
-from mend.documents.problem import list_names
-from mend.errors import ConflictError, NotFoundError, RefusalError
+from mend.errors import ConflictError, RefusalError
 from mend.fleet.asking.spoken_places import SpokenPlaces
 from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
-from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd, LegOutcome
+from mend.fleet.dispatch.leg import Found, Leg, LegEnd, LegOutcome
 from mend.fleet.requests import RequestKind
 from mend.fleet.right_of_way.right_of_way import Yielding
 from mend.robots.link.messages import Poses
-from mend.server.access.principal import RESERVED
 from mend.server.background import Endless
 from mend.server.fleets.alarms import Alarms
 from mend.server.fleets.charging import Charging
 from mend.server.fleets.closed_ways import ClosedWays
 from mend.server.fleets.errands import Errands
+from mend.server.fleets.fleet_book import FleetBook
 from mend.server.fleets.fleet_news import FleetNews
 from mend.server.fleets.fleet_record import Errand, FleetRecord
-from mend.server.fleets.fleets import KIND
 from mend.server.fleets.found_ways import FoundWays
 from mend.server.fleets.leg_execution import LegExecution, LegTurn
 from mend.server.fleets.leg_task import doable_kinds, require_doable, taken_out
 from mend.server.fleets.making_way import who_makes_way
 from mend.server.fleets.meeting_watch import MeetingWatch
 from mend.server.fleets.meetings import Meetings, Occupation
-from mend.server.fleets.operator_requests import WayReport
+from mend.server.fleets.operators import Operators
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.fleets.robot_findings import finding_of, findings
 from mend.server.fleets.runs import Runs
 from mend.server.journal import events as ev
-from mend.server.journal.journal import Document, Entry, Journal
+from mend.server.journal.journal import Journal
 from mend.server.poses.bases import SeenBase
 from mend.server.sites.odometer import Odometer
 from mend.server.sites.requests import FleetOptions
@@ -85,9 +82,6 @@ class FleetAtWork:
         self._runs = runs
         self._journal = journal
         self._pace = pace
-        self._news = FleetNews(site.id, dispatcher, utc_now)
-        self._at_once = asyncio.Lock()
-        self._changed = asyncio.Event()
         self._legs: dict[str, tuple[LegExecution, asyncio.Task[None]]] = {}
         self._errands = Errands(
             site,
@@ -98,8 +92,17 @@ class FleetAtWork:
             () if kept is None else kept.errands,
         )
         self._going: dict[str, asyncio.Task[None]] = {}
-        self.closed_ways = ClosedWays(dispatcher, () if kept is None else kept.closed_ways)
-        self._found_ways = FoundWays(dispatcher, self.closed_ways)
+        self._book = FleetBook(
+            site,
+            dispatcher,
+            places,
+            FleetNews(site.id, dispatcher, utc_now),
+            journal,
+            lambda: tuple(self._errands.going.values()),
+            kept,
+        )
+        self.operators = Operators(self._book, self._errands, self._execution_of, self._send)
+        self._found_ways = FoundWays(dispatcher, self._book.closed_ways)
         self._charging = Charging(dispatcher, site.battery, places.names)
         meetings = Meetings(dispatcher.building, site.frames, places.names, self._occupation)
         self._meeting_watch = MeetingWatch(
@@ -111,20 +114,16 @@ class FleetAtWork:
         self._running: list[asyncio.Task[None]] = []
         self._set_out: dict[str, Odometer | None] = {}
         """What robots had driven when they set out for the leg that they are on."""
-        self._kept: FleetRecord | None = None
-        self._noted: list[ev.Event] = []
         self._alarms = Alarms(lambda: self.now_s)
-        self.out_of_service = {} if kept is None else dict(kept.out_of_service)
-        """The robots that somebody has taken out, and why."""
 
     # --- Its life -----------------------------------------------------------------------------
 
     def start(self) -> None:
         """Begin to work; legs that were under way go on."""
-        self._site.changed = self._changed.set
+        self._site.changed = self._book.changed.set
         self._site.show_bases()
         self._site.hear_of_ways(OTHERS_S)
-        self._changed.set()
+        self._book.changed.set()
         loops = {"fleet of": self._work, "findings at": self._hear}
         loops["meetings at"] = self._meeting_watch.run
         self._running = [
@@ -144,13 +143,13 @@ class FleetAtWork:
     async def _work(self) -> None:
         working = Endless(f"the fleet of site {self._site.id}")
         while True:
-            await self._changed.wait()
-            self._changed.clear()
+            await self._book.changed.wait()
+            self._book.changed.clear()
             with working.one_pass():
                 await self._go_on()
 
     async def _go_on(self) -> None:
-        async with self._at_once:
+        async with self._book.at_once:
             free = [each for each in self.dispatcher.fleet.robots if self._is_free(each)]
             for robot, charger in self._charging.to_send(free, self.now_s):
                 self._send(robot, charger, None, charges=True)
@@ -160,7 +159,7 @@ class FleetAtWork:
             for robot, to in aside:
                 if robot not in self._errands.going and self._site.rests(robot):
                     self._send(robot, to, None)
-            await self._keep()
+            await self._book.keep()
             under_way = self.dispatcher.legs_under_way()
             robots = self.dispatcher.fleet.robots.items()
             failed = [name for name, each in robots if not each.works]
@@ -188,14 +187,18 @@ class FleetAtWork:
     def _decide(self, now_s: float) -> list[Leg]:
         """Have robots that rest set out for what is due; the legs that are not wanted any more."""
         for robot, known in self.dispatcher.fleet.robots.items():
-            if not known.works and robot not in self.out_of_service and self._site.rests(robot):
-                self.dispatcher.robot_back(robot, self._at(robot), now_s)
+            if (
+                not known.works
+                and robot not in self._book.out_of_service
+                and self._site.rests(robot)
+            ):
+                self.dispatcher.robot_back(robot, self._book.at(robot), now_s)
         unwanted = self.dispatcher.legs_to_withdraw(now_s)
         while due := [e for e in self.dispatcher.legs_to_begin(now_s) if self._is_free(e.robot)]:
-            start = self._at(due[0].robot)
+            start = self._book.at(due[0].robot)
             self.dispatcher.began(due[0], now_s)
             self._set_out[due[0].robot] = self._site.odometer(due[0].robot)
-            self._noted.append(self._news.begun(due[0], start))
+            self._book.note(self._book.news.begun(due[0], start))
         return unwanted
 
     def _is_free(self, robot: str) -> bool:
@@ -209,7 +212,17 @@ class FleetAtWork:
     @property
     def now_s(self) -> float:
         """The site's clock, as far as it is known: it never goes back."""
-        return max(self.dispatcher.now_s, self._site.world.time.latest_s)
+        return self._book.now_s
+
+    @property
+    def out_of_service(self) -> Mapping[str, str]:
+        """The robots that somebody has taken out, and why."""
+        return self._book.out_of_service
+
+    @property
+    def closed_ways(self) -> ClosedWays:
+        """What was told of ways."""
+        return self._book.closed_ways
 
     @property
     def shown_s(self) -> float:
@@ -230,7 +243,7 @@ class FleetAtWork:
 
     async def wait_until(self, moment_s: float) -> None:
         """Have the site's clock come to a moment, whether or not there is anything to do."""
-        self._changed.set()
+        self._book.changed.set()
         await self._alarms.wait(moment_s)
 
     # --- Legs ---------------------------------------------------------------------------------
@@ -246,15 +259,15 @@ class FleetAtWork:
         self._legs[leg.robot] = execution, task
 
     async def _follow(self, leg: Leg, execution: LegExecution) -> None:
-        async with self._at_once:
+        async with self._book.at_once:
             at_once = self.dispatcher.may_begin(leg, self.now_s)
         end = await execution.run(at_once=at_once)
-        async with self._at_once:
+        async with self._book.at_once:
             if leg.robot in {each.robot for each in self.dispatcher.legs_under_way()}:
                 await asyncio.to_thread(self._end, leg, end)
             del self._legs[leg.robot]
-            await self._keep()
-        self._changed.set()
+            await self._book.keep()
+        self._book.changed.set()
 
     async def _hear(self) -> None:
         """Have plans follow what robots find on their ways."""
@@ -266,7 +279,7 @@ class FleetAtWork:
                     await self._robot_found(found)
 
     async def _robot_found(self, found: Found) -> None:
-        async with self._told():
+        async with self._book.told():
             try:
                 if await asyncio.to_thread(self._found_ways.take, found, self.now_s):
                     self._note_found(found)
@@ -278,7 +291,7 @@ class FleetAtWork:
         a, b = found.between
         finding = found.finding.replace("_", " ")
         told = f"found of the way between {a} and {b}: {finding}"
-        self._noted.append(self._news.told(told, finder=found.by))
+        self._book.note(self._book.news.told(told, finder=found.by))
 
     def saw(self, robot: str, poses: Poses) -> None:
         """A robot says where it is, by the site's clock."""
@@ -286,15 +299,18 @@ class FleetAtWork:
         errand = self._errands.going.get(robot)
         charges = errand is not None and errand.charges
         if charges and self._charging.may_leave(robot, poses.battery, poses.time):
-            self._changed.set()
+            self._book.changed.set()
 
     def _have_met(self, decided: Yielding, place: str | None) -> None:
         """A robot makes way for another one; `place`: where it is to go for that, if it rests."""
         told = f"met {decided.other} where they cannot pass each other, and makes way for it"
-        self._noted.append(self._news.told(told, finder=decided.robot))
+        self._book.note(self._book.news.told(told, finder=decided.robot))
         if place is not None:
             self._asked_aside[decided.robot] = place
-        self._changed.set()
+        self._book.changed.set()
+
+    def _execution_of(self, robot: str) -> LegExecution | None:
+        return self._legs[robot][0] if robot in self._legs else None
 
     def _occupation(self, robot: str) -> Occupation:
         leg, errand = self._legs.get(robot), self._errands.going.get(robot)
@@ -302,14 +318,14 @@ class FleetAtWork:
             return Occupation(goal=leg[0].place)
         if errand is not None:
             return Occupation(goal=errand.place)
-        return Occupation(rests=self._site.rests(robot) and robot not in self.out_of_service)
+        return Occupation(rests=self._site.rests(robot) and robot not in self._book.out_of_service)
 
     def _send(
         self, robot: str, place: str, author: ev.Author | None, *, charges: bool = False
     ) -> None:
         """Have a robot without a leg go somewhere, once that is journaled."""
         errand = self._errands.add(robot, place, charges=charges)
-        self._noted.append(self._news.errand_begun(errand, self._at(robot), author))
+        self._book.note(self._book.news.errand_begun(errand, self._book.at(robot), author))
 
     async def _go(self, errand: Errand) -> None:
         robot, begun = errand.robot, True
@@ -321,26 +337,26 @@ class FleetAtWork:
             # Its robot would be thought to be on its way for ever.
             log.exception("an errand of %s could not be carried out", robot)
             reason, begun = "a fault of Mend's own; see its log", False
-        async with self._at_once:
-            at = errand.place if reason is None else self._at(robot)
+        async with self._book.at_once:
+            at = errand.place if reason is None else self._book.at(robot)
             if errand.charges and reason is not None:
                 self._charging.could_not(robot, self.now_s)
-            self._noted.append(self._news.errand_ended(errand, at, reason))
+            self._book.note(self._book.news.errand_ended(errand, at, reason))
             try:
                 self._errands.end(errand, at)
             except ConflictError as error:
                 log.info("where %s has gone changes no plan: %s", robot, error)
             del self._going[robot]
-            await self._keep()
+            await self._book.keep()
         if begun:
-            self._changed.set()
+            self._book.changed.set()
         # Else whatever changes next has it tried again, where it makes way.
 
     def _end(self, leg: Leg, end: LegEnd) -> None:
         robot, now_s = leg.robot, self.now_s
         done = end.outcome is LegOutcome.DONE
         gone = None if self._site.is_connected(robot) else end.reason or "it is gone"
-        why = self.out_of_service.get(robot, None if done else gone)
+        why = self._book.out_of_service.get(robot, None if done else gone)
         if done or why is None:
             try:
                 self.dispatcher.ended(leg, end, now_s)
@@ -351,16 +367,16 @@ class FleetAtWork:
                 end = refused
         if why is not None:
             # Others fetch what it has, and do what it was to do.
-            self.dispatcher.robot_failed(robot, self._met_at(robot), why, now_s)
+            self.dispatcher.robot_failed(robot, self._book.met_at(robot), why, now_s)
         odometer, before = self._site.odometer(robot), self._set_out.pop(robot, None)
         driven = None if odometer is None else odometer.since(before)
-        self._noted.append(self._news.ended(leg, end, driven))
+        self._book.note(self._book.news.ended(leg, end, driven))
 
     def stands_at(self, robot: str) -> str | None:
         """The place at which somebody asks a robot; None where none is sent. Raises
         `NotFoundError`."""
-        self._require_robot(robot)
-        place = self._at(robot)
+        self._book.require_robot(robot)
+        place = self._book.at(robot)
         return place if place in self.places.names else None
 
     @property
@@ -378,24 +394,11 @@ class FleetAtWork:
         """Seconds of the site's clock per second; None where it goes as fast as it can."""
         return self._pace
 
-    def _at(self, robot: str) -> str:
-        """The place that a robot is nearest to, as far as is known."""
-        where = self._site.whereabouts(robot)
-        place = None if where is None else self.places.nearest(*where)
-        known = self.dispatcher.fleet.robots[robot].place
-        return place or self.dispatcher.building.graph.places[known].name
-
-    def _met_at(self, robot: str) -> str:
-        """Where others are brought what a robot has that does not get on: it may bar its place."""
-        where = self._site.whereabouts(robot)
-        place = None if where is None else self.places.beside(*where)
-        return place or self._at(robot)
-
     async def _arrived(self, leg: Leg) -> None:
-        async with self._at_once:
+        async with self._book.at_once:
             self.dispatcher.arrived(leg, self.now_s)
-            await self._keep()
-        self._changed.set()
+            await self._book.keep()
+        self._book.changed.set()
 
     # --- What people ask ----------------------------------------------------------------------
 
@@ -405,14 +408,14 @@ class FleetAtWork:
         """
         self._require_doable(request)
         first = request.name if request.recurrence is None else f"{request.name}/1"
-        async with self._told(author, request.name):
+        async with self._book.told(author, request.name):
             answer = await asyncio.to_thread(self.dispatcher.submit, request, self.now_s)
             return self._booked(first, answer)
 
     async def change(self, name: str, request: AnyRequest, author: ev.Author | None) -> RequestView:
         """Other words for what nobody has set out for. Raises what `submit` does."""
         self._require_doable(request)
-        async with self._told(author, name):
+        async with self._book.told(author, name):
             answer = await asyncio.to_thread(self.dispatcher.change, name, request, self.now_s)
             return self._booked(name, answer)
 
@@ -423,110 +426,18 @@ class FleetAtWork:
 
     async def cancel(self, name: str, author: ev.Author | None) -> RequestView | None:
         """What was asked for is not wanted any more. Raises as `Dispatcher.cancel`."""
-        async with self._told(author, name):
+        async with self._book.told(author, name):
             return self.dispatcher.cancel(name, self.now_s)
-
-    # --- What operators say -------------------------------------------------------------------
-
-    async def found(self, way: WayReport, author: ev.Author | None) -> None:
-        """A way was found blocked, or open. Raises as `Dispatcher.found`."""
-        a, b = way.between or self._stops_of(way.elevator or "")
-        what = f"the way between {a} and {b}" if way.elevator is None else way.elevator
-        found = Found(finding=Finding(way.finding), between=(a, b), until_s=way.until_s)
-        async with self._told():
-            self.dispatcher.found(found, self.now_s)
-            named = author is not None and author.principal not in RESERVED
-            self.closed_ways.note(found, author.principal if author and named else None)
-            finding = way.finding.replace("_", " ")
-            self._note(f"said of {what}: {finding}", author)
-
-    def _stops_of(self, elevator: str) -> list[str]:
-        """Two places where it stops. Raises `NotFoundError`."""
-        elevators = self.dispatcher.building.document.elevators
-        if elevator not in elevators:
-            raise NotFoundError(
-                f"there is no elevator '{elevator}'; there are {list_names(list(elevators))}"
-            )
-        return [f"{floor}/{at}" for floor, at in elevators[elevator].stops.items()][:2]
-
-    async def take_out(self, robot: str, reason: str, author: ev.Author | None) -> None:
-        """A robot is to do nothing more for now; others fetch what it has.
-
-        Raises `NotFoundError`, and `ConflictError` where it is out of service already.
-        """
-        async with self._told():
-            self._require_robot(robot)
-            if robot in self.out_of_service:
-                raise ConflictError(f"robot '{robot}' is out of service already")
-            self.out_of_service[robot] = reason
-            self._note(f"took {robot} out of service: {reason}", author, robot, in_service=False)
-            leg = next((e for e in self.dispatcher.legs_under_way() if e.robot == robot), None)
-            errand = self._errands.going.get(robot)
-            if leg is None and self.dispatcher.fleet.robots[robot].works:
-                self.dispatcher.robot_failed(robot, self._met_at(robot), reason, self.now_s)
-        if leg is not None and robot in self._legs:
-            await self._legs[robot][0].break_off()
-        if errand is not None:
-            await self._errands.break_off(errand)
-
-    async def send(self, robot: str, place: str, author: ev.Author | None) -> None:
-        """Have a robot that carries out no leg go to a place; its legs begin after that.
-
-        Raises `NotFoundError`, `WrongInputError` for where no robot goes, and `ConflictError` for
-        a robot that is at work, or is not there.
-        """
-        async with self._told():
-            self._require_robot(robot)
-            self.places.in_scene(place)
-            self._errands.require_free(robot)
-            self._send(robot, self.dispatcher.building.find(place), author)
 
     async def have_answered(self, answers: Literal["live", "yes", "late"]) -> None:
         """Who answers robots in the legs that begin from now on."""
-        async with self._at_once:
+        async with self._book.at_once:
             self._options = self._options.model_copy(update={"answers": answers})
-
-    async def put_back(self, robot: str, author: ev.Author | None) -> None:
-        """A robot works again, from where it stands.
-
-        Raises `NotFoundError`, and `ConflictError` where nobody has taken it out of service.
-        """
-        async with self._told():
-            self._require_robot(robot)
-            if self.out_of_service.pop(robot, None) is None:
-                raise ConflictError(f"robot '{robot}' is in service")
-            self._note(f"put {robot} back in service", author, robot, in_service=True)
-
-    def _note(
-        self,
-        told: str,
-        author: ev.Author | None,
-        robot: str | None = None,
-        in_service: bool | None = None,
-    ) -> None:
-        """Something an operator has told, to be journaled with what comes of it."""
-        self._noted.append(self._news.told(told, author, robot=robot, in_service=in_service))
-
-    def _require_robot(self, robot: str) -> None:
-        if robot not in self.dispatcher.fleet.robots:
-            known = ", ".join(self.dispatcher.fleet.robots)
-            raise NotFoundError(f"this fleet has no robot '{robot}'; it has {known}")
 
     def _require_doable(self, request: AnyRequest) -> None:
         for place in request.places:
             self.places.in_scene(place)
         require_doable(request, self._behaviors)
-
-    @asynccontextmanager
-    async def _told(self, author: ev.Author | None = None, asked: str = "") -> AsyncIterator[None]:
-        """Journal what comes of it, before anybody hears of it."""
-        async with self._at_once:
-            try:
-                yield
-            finally:
-                # Also what was refused is known from then on.
-                await self._keep(author, asked.split("/", 1)[0])
-                self._changed.set()
 
     @property
     def errands(self) -> Mapping[str, Errand]:
@@ -551,23 +462,5 @@ class FleetAtWork:
 
     async def read(self, view: Callable[[Dispatcher], T]) -> T:
         """What a view of its dispatcher shows, while nothing changes there."""
-        async with self._at_once:
+        async with self._book.at_once:
             return view(self.dispatcher)
-
-    # --- What is kept -------------------------------------------------------------------------
-
-    async def _keep(self, author: ev.Author | None = None, asked: str = "") -> None:
-        """Write down what has changed. Waits as long as the journal cannot be written."""
-        events = [*self._noted, *self._news.since(author, asked)]
-        self._noted.clear()
-        record = FleetRecord(
-            dispatcher=self.dispatcher.snapshot(),
-            out_of_service=self.out_of_service,
-            errands=tuple(self._errands.going.values()),
-            closed_ways=self.closed_ways.kept(),
-        )
-        if not events and record == self._kept:
-            return
-        document = Document(KIND, str(self._site.id), record.model_dump_json())
-        await self._journal.append(Entry(events=events, document=document), patient=True)
-        self._kept = record

@@ -88,7 +88,7 @@ async def test_what_one_robot_finds_others_go_round_from_the_beginning_after_a_r
         site = (await service.sites.open_site(opened)).id
         fleet = await service.fleets.fleet(site)
         robot1, robot2 = sorted(await fleet.read(lambda all_: list(all_.fleet.robots)))
-        await fleet.take_out(robot2, "it waits", None)
+        await fleet.operators.take_out(robot2, "it waits", None)
         await service.fleets.submit(site, GoToRoom(name="first", place=first), None)
         await done(service, "first")
         before = list(await service.journal.read(0, 100_000))
@@ -96,8 +96,8 @@ async def test_what_one_robot_finds_others_go_round_from_the_beginning_after_a_r
     async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
         fleet = await service.fleets.fleet(site)
         assert ring.lane in await fleet.read(lambda all_: dict(all_.closed_until_s()))
-        await fleet.take_out(robot1, "it waits", None)
-        await fleet.put_back(robot2, None)
+        await fleet.operators.take_out(robot1, "it waits", None)
+        await fleet.operators.put_back(robot2, None)
         await service.fleets.submit(site, GoToRoom(name="second", place=second), None)
         await done(service, "second")
         events = list(await service.journal.read(0, 100_000))

@@ -40,8 +40,8 @@ async def test_one_of_two_that_meet_in_a_door_makes_way_and_nobody_is_asked(
         site = await open_office_with_fleet(service, 5.0, robots=2, stand=face_to_face())
         fleet = await service.fleets.fleet(site)
         inside, outside = fleet.dispatcher.fleet.robots
-        await fleet.send(inside, "F1/103", None)
-        await fleet.send(outside, f"F1/{ROOM}", None)
+        await fleet.operators.send(inside, "F1/103", None)
+        await fleet.operators.send(outside, f"F1/{ROOM}", None)
         events = await events_until(
             service, lambda all_: sum(isinstance(e, ev.ErrandEnded) for e in all_) == 2
         )

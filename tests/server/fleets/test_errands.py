@@ -37,7 +37,7 @@ async def ends(work: Work) -> list[ev.ErrandEnded]:
 
 async def test_a_robot_goes_where_it_is_sent_and_the_plan_knows() -> None:
     async with working("a") as work:
-        await work.fleet.send("r0", "d", OLGA)
+        await work.fleet.operators.send("r0", "d", OLGA)
         going = await work.runs.nth(1)
         assert (going.behavior, going.parameters) == ("go_to", {"place": "d"})
         (begun,) = [e for e in await work.journal.read(0, 1000) if isinstance(e, ev.ErrandBegun)]
@@ -51,7 +51,7 @@ async def test_a_robot_goes_where_it_is_sent_and_the_plan_knows() -> None:
 
 async def test_what_is_asked_meanwhile_begins_once_the_robot_is_there() -> None:
     async with working("a") as work:
-        await work.fleet.send("r0", "d", None)
+        await work.fleet.operators.send("r0", "d", None)
         going = await work.runs.nth(1)
         await work.fleet.submit(asked(), None)
         assert await work.status("tea") is RequestStatus.BOOKED
@@ -65,7 +65,7 @@ async def test_what_is_asked_meanwhile_begins_once_the_robot_is_there() -> None:
 
 async def test_who_does_not_come_there_is_known_where_it_stands() -> None:
     async with working("a") as work:
-        await work.fleet.send("r0", "e", None)
+        await work.fleet.operators.send("r0", "e", None)
         going = await work.runs.nth(1)
         work.site.standing["r0"] = (19.0, 0.4, 0.0)
         going.ended.set_result(("failed", False))
@@ -78,28 +78,28 @@ async def test_who_does_not_come_there_is_known_where_it_stands() -> None:
 async def test_who_is_at_work_or_on_its_way_or_away_is_not_sent() -> None:
     async with working("a", "e") as work:
         with pytest.raises(NotFoundError, match="this fleet has no robot 'r7'"):
-            await work.fleet.send("r7", "b", None)
+            await work.fleet.operators.send("r7", "b", None)
         with pytest.raises(NotFoundError):
-            await work.fleet.send("r0", "attic", None)
+            await work.fleet.operators.send("r0", "attic", None)
         await work.fleet.submit(visit(place="b"), None)
         await work.runs.nth(1)
         with pytest.raises(ConflictError, match="'r0' is at work for 'visit' at f/b: send it once"):
-            await work.fleet.send("r0", "c", None)
-        await work.fleet.send("r1", "d", None)
+            await work.fleet.operators.send("r0", "c", None)
+        await work.fleet.operators.send("r1", "d", None)
         with pytest.raises(ConflictError, match="'r1' is on its way to f/d"):
-            await work.fleet.send("r1", "e", None)
+            await work.fleet.operators.send("r1", "e", None)
         (await work.runs.nth(2)).ended.set_result(("finished", True))
         await until_no_errand(work)
         work.site.gone.add("r1")
         with pytest.raises(ConflictError, match="'r1' is not connected"):
-            await work.fleet.send("r1", "e", None)
+            await work.fleet.operators.send("r1", "e", None)
         assert len(work.runs.runs) == 2
 
 
 async def test_who_is_out_of_service_may_be_sent_and_stays_out_of_it() -> None:
     async with working("a") as work:
-        await work.fleet.take_out("r0", "its wheel squeaks", None)
-        await work.fleet.send("r0", "e", OLGA)
+        await work.fleet.operators.take_out("r0", "its wheel squeaks", None)
+        await work.fleet.operators.send("r0", "e", OLGA)
         (await work.runs.nth(1)).ended.set_result(("finished", True))
         await until_no_errand(work)
         assert not work.fleet.dispatcher.fleet.robots["r0"].works
@@ -108,9 +108,9 @@ async def test_who_is_out_of_service_may_be_sent_and_stays_out_of_it() -> None:
 
 async def test_who_is_taken_out_on_its_way_breaks_off() -> None:
     async with working("a") as work:
-        await work.fleet.send("r0", "e", None)
+        await work.fleet.operators.send("r0", "e", None)
         going = await work.runs.nth(1)
-        await work.fleet.take_out("r0", "its wheel squeaks", None)
+        await work.fleet.operators.take_out("r0", "its wheel squeaks", None)
         assert going.ended.result() == ("aborted", False)
         await until_no_errand(work)
         assert [each.came for each in await ends(work)] == [False]
@@ -127,8 +127,8 @@ async def test_who_is_taken_out_before_its_run_has_begun_breaks_off_once_it_has(
             await begin(*run)
 
         monkeypatch.setattr(work.runs, "start_run_of", begin_late)
-        await work.fleet.send("r0", "e", None)
-        await work.fleet.take_out("r0", "its wheel squeaks", None)
+        await work.fleet.operators.send("r0", "e", None)
+        await work.fleet.operators.take_out("r0", "its wheel squeaks", None)
         may_begin.set()
         assert (await work.runs.nth(1)).ended.result() == ("aborted", False)
         await until_no_errand(work)
@@ -136,7 +136,7 @@ async def test_who_is_taken_out_before_its_run_has_begun_breaks_off_once_it_has(
 
 async def test_after_a_restart_the_same_errand_goes_on() -> None:
     async with working("a") as work:
-        await work.fleet.send("r0", "d", None)
+        await work.fleet.operators.send("r0", "d", None)
         going = await work.runs.nth(1)
         await work.fleet.stop()
         kept = (await work.journal.documents(KIND))[str(work.site.id)]
@@ -155,7 +155,7 @@ async def test_after_a_restart_the_same_errand_goes_on() -> None:
 
 async def test_an_errand_that_cannot_be_begun_says_why() -> None:
     async with working("a", refuse=1) as work:
-        await work.fleet.send("r0", "d", None)
+        await work.fleet.operators.send("r0", "d", None)
         await until_no_errand(work)
         (ended,) = await ends(work)
         assert (ended.came, ended.reason, ended.at) == (False, "the robot is busy", "f/a")

@@ -46,7 +46,7 @@ async def test_what_a_robot_is_at_is_told_apart_from_where_it_is_sent() -> None:
     async with working("a", "e") as work:
         await work.fleet.submit(asked(), None)
         await work.runs.nth(1)
-        await work.fleet.send("r1", "d", None)
+        await work.fleet.operators.send("r1", "d", None)
         first, second = (await view_of(work)).robots
         assert first.at_work is not None
         assert second.at_work is not None
@@ -60,7 +60,7 @@ async def test_what_a_robot_is_at_is_told_apart_from_where_it_is_sent() -> None:
 async def test_closed_ways_are_told_with_who_found_them_until_they_are_open() -> None:
     async with working("a") as work:
         closing = WayReport(finding="blocked", between=["c", "b"], until_s=900.0)
-        await work.fleet.found(closing, OLGA)
+        await work.fleet.operators.found(closing, OLGA)
         (closed,) = (await view_of(work)).closed
         assert (closed.between, closed.finding, closed.by) == (
             ["f/b", "f/c"],
@@ -68,7 +68,7 @@ async def test_closed_ways_are_told_with_who_found_them_until_they_are_open() ->
             "olga",
         )
         assert closed.until_s == pytest.approx(900.0)
-        await work.fleet.found(WayReport(finding="open", between=["b", "c"]), OLGA)
+        await work.fleet.operators.found(WayReport(finding="open", between=["b", "c"]), OLGA)
         assert (await view_of(work)).closed == []
         kept = (await work.journal.documents(KIND))[str(work.site.id)]
         assert FleetRecord.model_validate_json(kept).closed_ways == ()
@@ -76,7 +76,7 @@ async def test_closed_ways_are_told_with_who_found_them_until_they_are_open() ->
 
 async def test_who_found_a_way_closed_is_known_after_a_restart() -> None:
     async with working("a") as work:
-        await work.fleet.found(WayReport(finding="door_closed", between=["b", "c"]), OLGA)
+        await work.fleet.operators.found(WayReport(finding="door_closed", between=["b", "c"]), OLGA)
         await work.fleet.stop()
         kept = (await work.journal.documents(KIND))[str(work.site.id)]
         was = FleetRecord.model_validate_json(kept)

@@ -413,16 +413,16 @@ async def test_a_robot_that_is_taken_out_breaks_off_and_another_takes_over() -> 
         await work.fleet.submit(visit(place="b"), None)
         going = await work.runs.nth(1)
         assert going.robot == "r0"
-        await work.fleet.take_out("r0", "its wheel squeaks", None)
+        await work.fleet.operators.take_out("r0", "its wheel squeaks", None)
         assert going.ended.result() == ("aborted", False)
         instead = await work.runs.nth(2)
         assert instead.robot == "r1"
         instead.ended.set_result(("finished", True))
         await work.until("visit", RequestStatus.DONE)
         with pytest.raises(ConflictError, match="is out of service already"):
-            await work.fleet.take_out("r0", "its wheel squeaks", None)
+            await work.fleet.operators.take_out("r0", "its wheel squeaks", None)
         with pytest.raises(NotFoundError, match="this fleet has no robot 'r7'; it has r0, r1"):
-            await work.fleet.take_out("r7", "its wheel squeaks", None)
+            await work.fleet.operators.take_out("r7", "its wheel squeaks", None)
 
 
 async def _with_tea_aboard_r0_fails(work: Work) -> FakeRun:
@@ -431,7 +431,7 @@ async def _with_tea_aboard_r0_fails(work: Work) -> FakeRun:
     (await work.runs.nth(1)).ended.set_result(("finished", True))
     assert (await work.runs.nth(2)).behavior == "hand_over_item"
     work.site.standing["r0"] = (20.0, 0.0, 0.0)
-    await work.fleet.take_out("r0", "its wheel squeaks", None)
+    await work.fleet.operators.take_out("r0", "its wheel squeaks", None)
     fetching = await work.runs.nth(3)
     assert (fetching.robot, fetching.behavior) == ("r1", "collect_item")
     return fetching
@@ -452,7 +452,7 @@ async def test_who_fetches_something_says_in_whose_basket_it_is_and_its_robot_is
 async def test_a_robot_that_is_put_back_brings_what_nobody_has_fetched() -> None:
     async with working("a", "e") as work:
         fetching = await _with_tea_aboard_r0_fails(work)
-        await work.fleet.put_back("r0", None)
+        await work.fleet.operators.put_back("r0", None)
         bringing = await work.runs.nth(4)
         assert (bringing.robot, bringing.behavior) == ("r0", "hand_over_item")
         assert fetching.ended.result() == ("aborted", False)
@@ -465,7 +465,7 @@ async def test_what_was_fetched_just_as_its_robot_was_put_back_is_brought_by_who
     async with working("a", "e") as work:
         fetching = await _with_tea_aboard_r0_fails(work)
         work.runs.abort = _too_late  # type: ignore[method-assign]
-        await work.fleet.put_back("r0", None)
+        await work.fleet.operators.put_back("r0", None)
         fetching.ended.set_result(("finished", True))
         bringing = await work.runs.nth(4)
         assert (bringing.robot, bringing.behavior) == ("r1", "hand_over_item")
@@ -478,25 +478,25 @@ async def _too_late(*_: object) -> Any:
 
 async def test_a_robot_that_is_out_of_service_works_only_once_it_is_put_back() -> None:
     async with working("a") as work:
-        await work.fleet.take_out("r0", "its wheel squeaks", None)
+        await work.fleet.operators.take_out("r0", "its wheel squeaks", None)
         kept = (await work.journal.documents(KIND))[str(SITE)]
         assert FleetRecord.model_validate_json(kept).out_of_service == {"r0": "its wheel squeaks"}
         with pytest.raises(RequestRefusedError, match="no robot works"):
             await work.fleet.submit(visit(), None)
-        await work.fleet.put_back("r0", None)
+        await work.fleet.operators.put_back("r0", None)
         await work.fleet.submit(visit(), None)
         (await work.runs.nth(1)).ended.set_result(("finished", True))
         await work.until("visit", RequestStatus.DONE)
         with pytest.raises(ConflictError, match="is in service"):
-            await work.fleet.put_back("r0", None)
+            await work.fleet.operators.put_back("r0", None)
 
 
 async def test_a_way_that_somebody_found_blocked_keeps_robots_off_it() -> None:
     async with working("a") as work:
-        await work.fleet.found(WayReport(finding="blocked", between=["b", "c"]), None)
+        await work.fleet.operators.found(WayReport(finding="blocked", between=["b", "c"]), None)
         with pytest.raises(RequestRefusedError):
             await work.fleet.submit(visit(place="d", latest_s=200.0), None)
-        await work.fleet.found(WayReport(finding="open", between=["b", "c"]), None)
+        await work.fleet.operators.found(WayReport(finding="open", between=["b", "c"]), None)
         await work.fleet.submit(visit(place="d", latest_s=200.0), None)
         assert (await work.runs.nth(1)).parameters == {"place": "d", "near_m": MEETS_M}
 
@@ -542,10 +542,10 @@ async def test_a_robot_with_nothing_to_do_makes_way_for_one_that_comes() -> None
         assert first.robot == "r0"
         first.ended.set_result(("finished", True))
         await work.until("visit", RequestStatus.DONE)
-        await work.fleet.take_out("r0", "it is to stay", None)
+        await work.fleet.operators.take_out("r0", "it is to stay", None)
         await work.fleet.submit(visit("again", place="c"), None)
         assert (await work.runs.nth(2)).robot == "r1"
-        await work.fleet.put_back("r0", None)
+        await work.fleet.operators.put_back("r0", None)
         away = await work.runs.nth(3)
         assert (away.robot, away.behavior, away.parameters) == ("r0", "go_to", {"place": "b"})
         away.ended.set_result(("finished", True))
@@ -562,4 +562,6 @@ def _place_of_r0(dispatcher: Dispatcher) -> str:
 async def test_who_says_that_an_elevator_is_dead_names_one_that_there_is() -> None:
     async with working("a") as work:
         with pytest.raises(NotFoundError, match="there is no elevator 'lift9'"):
-            await work.fleet.found(WayReport(finding="elevator_dead", elevator="lift9"), None)
+            await work.fleet.operators.found(
+                WayReport(finding="elevator_dead", elevator="lift9"), None
+            )

@@ -1,0 +1,107 @@
+"""What operators say to a fleet: of ways, and of robots."""
+
+from collections.abc import Callable
+
+from mend.documents.problem import list_names
+from mend.errors import ConflictError, NotFoundError
+from mend.fleet.dispatch.leg import Finding, Found
+from mend.server.access.principal import RESERVED
+from mend.server.fleets.errands import Errands
+from mend.server.fleets.fleet_book import FleetBook
+from mend.server.fleets.leg_execution import LegExecution
+from mend.server.fleets.operator_requests import WayReport
+from mend.server.journal import events as ev
+
+
+class Operators:
+    """Does with one fleet what operators say.
+
+    `legs`: how the leg of a robot is carried out, if one is; `sends` has a robot go to a place.
+    """
+
+    def __init__(
+        self,
+        book: FleetBook,
+        errands: Errands,
+        legs: Callable[[str], LegExecution | None],
+        sends: Callable[[str, str, ev.Author | None], None],
+    ) -> None:
+        self._book, self._errands = book, errands
+        self._legs, self._sends = legs, sends
+
+    async def found(self, way: WayReport, author: ev.Author | None) -> None:
+        """A way was found blocked, or open. Raises as `Dispatcher.found`."""
+        a, b = way.between or self._stops_of(way.elevator or "")
+        what = f"the way between {a} and {b}" if way.elevator is None else way.elevator
+        found = Found(finding=Finding(way.finding), between=(a, b), until_s=way.until_s)
+        async with self._book.told():
+            self._book.dispatcher.found(found, self._book.now_s)
+            named = author is not None and author.principal not in RESERVED
+            self._book.closed_ways.note(found, author.principal if author and named else None)
+            finding = way.finding.replace("_", " ")
+            self._note(f"said of {what}: {finding}", author)
+
+    def _stops_of(self, elevator: str) -> list[str]:
+        """Two places where it stops. Raises `NotFoundError`."""
+        elevators = self._book.dispatcher.building.document.elevators
+        if elevator not in elevators:
+            raise NotFoundError(
+                f"there is no elevator '{elevator}'; there are {list_names(list(elevators))}"
+            )
+        return [f"{floor}/{at}" for floor, at in elevators[elevator].stops.items()][:2]
+
+    async def take_out(self, robot: str, reason: str, author: ev.Author | None) -> None:
+        """A robot is to do nothing more for now; others fetch what it has.
+
+        Raises `NotFoundError`, and `ConflictError` where it is out of service already.
+        """
+        async with self._book.told():
+            self._book.require_robot(robot)
+            if robot in self._book.out_of_service:
+                raise ConflictError(f"robot '{robot}' is out of service already")
+            self._book.out_of_service[robot] = reason
+            self._note(f"took {robot} out of service: {reason}", author, robot, in_service=False)
+            dispatcher, errand = self._book.dispatcher, self._errands.going.get(robot)
+            leg = next((e for e in dispatcher.legs_under_way() if e.robot == robot), None)
+            if leg is None and dispatcher.fleet.robots[robot].works:
+                at = self._book.met_at(robot)
+                dispatcher.robot_failed(robot, at, reason, self._book.now_s)
+        execution = self._legs(robot)
+        if leg is not None and execution is not None:
+            await execution.break_off()
+        if errand is not None:
+            await self._errands.break_off(errand)
+
+    async def send(self, robot: str, place: str, author: ev.Author | None) -> None:
+        """Have a robot that carries out no leg go to a place; its legs begin after that.
+
+        Raises `NotFoundError`, `WrongInputError` for where no robot goes, and `ConflictError` for
+        a robot that is at work, or is not there.
+        """
+        async with self._book.told():
+            self._book.require_robot(robot)
+            self._book.places.in_scene(place)
+            self._errands.require_free(robot)
+            self._sends(robot, self._book.dispatcher.building.find(place), author)
+
+    async def put_back(self, robot: str, author: ev.Author | None) -> None:
+        """A robot works again, from where it stands.
+
+        Raises `NotFoundError`, and `ConflictError` where nobody has taken it out of service.
+        """
+        async with self._book.told():
+            self._book.require_robot(robot)
+            if self._book.out_of_service.pop(robot, None) is None:
+                raise ConflictError(f"robot '{robot}' is in service")
+            self._note(f"put {robot} back in service", author, robot, in_service=True)
+
+    def _note(
+        self,
+        told: str,
+        author: ev.Author | None,
+        robot: str | None = None,
+        in_service: bool | None = None,
+    ) -> None:
+        """Something an operator has told, to be journaled with what comes of it."""
+        told_of = self._book.news.told(told, author, robot=robot, in_service=in_service)
+        self._book.note(told_of)
