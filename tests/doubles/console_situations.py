@@ -261,10 +261,10 @@ async def fleet(service: Service, open_page: OpenPage) -> Page:
     site = await open_office_with_fleet(service, robots=2, floors=2)
     at_work = await service.fleets.fleet(site)
     _, second = at_work.dispatcher.fleet.robots
-    await at_work.take_out(second, "its wheel squeaks", None)
+    await at_work.operators.take_out(second, "its wheel squeaks", None)
     lane = at_work.dispatcher.building.floors["F1"].lanes[0]
     between = [f"F1/{each}" for each in lane.between]
-    await at_work.found(WayReport(finding="blocked", between=between), None)
+    await at_work.operators.found(WayReport(finding="blocked", between=between), None)
     wanted = [
         Transport(name="parcel", what="the blue parcel", origin="F1/101", destination="F1/106"),
         DeliverMessage(name="lunch", place="F1/103", message="Lunch.", earliest_s=600.0),

@@ -6,22 +6,32 @@ import pytest
 from console_in_browser import OpenPage, settle
 from console_situations import ask
 from playwright.async_api import Page, expect
+from playwright.async_api import TimeoutError as PlaywrightTimeout
 
 from mend.server.composition import Service
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
-OVERLAPS = (Path(__file__).parent / "overlaps.js").read_text()
+OVERLAPS = (Path(__file__).parent / "overlaps.js").read_text().strip()
 WIDTHS = (360, 768, 1440)
 # Nothing is under a bar that sticks to an edge by the chance of where the page is scrolled to.
 TALL = 3000
 
 
+# Names of what moves are laid out anew three times a second: until then one may be over another.
+LAID_OUT_MS = 1500
+
+
 async def overlaps(page: Page) -> list[str]:
-    """What is in the way of something else on a page as it is shown now."""
-    found: list[str] = await page.evaluate(OVERLAPS)
-    return found
+    """What is in the way of something else on a page, and stays there."""
+    none = f"() => ({OVERLAPS})().length === 0"
+    try:
+        await page.wait_for_function(none, timeout=LAID_OUT_MS)
+    except PlaywrightTimeout:
+        found: list[str] = await page.evaluate(OVERLAPS)
+        return found
+    return []
 
 
 async def test_what_overlaps_is_found(open_page: OpenPage) -> None:
