@@ -243,15 +243,17 @@ class Guests:
         left_m = guest.way_m(robot.at)
         goes = inside is not None or (guest.led and not self._dawdles(guest, time_s))
         goes = goes and robot.at.floor == guest.at.floor and left_m >= _FOLLOWS_M
+        # Nobody lets themselves be pushed out of a cabin where it has no door.
+        keep_m = None if inside is None else _IN_CABIN_KEEP_M
         if not goes or not guest.trail:
-            self._step(guest, here, 0.0, robot, around)
+            self._step(guest, here, 0.0, robot, around, keep_m)
             return
         if open_doors(around.doors, guest.at, time_s):
             return
         _cut_off(guest, around.segments(guest.at.floor))
         slowed = (left_m - _FOLLOWS_M + 0.2) / _SLOWS_OVER_M
         goal = np.array(guest.trail[0])
-        self._step(guest, goal, guest.speed_m_s * min(1.0, slowed), robot, around)
+        self._step(guest, goal, guest.speed_m_s * min(1.0, slowed), robot, around, keep_m)
 
     def _dawdles(self, guest: Guest, time_s: float) -> bool:
         if time_s >= guest.thinks_s:

@@ -9,6 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mend.maps.building.building import Building, BuildingDocument, Caller
+from mend.maps.building.cabin import CABIN_M
 from mend.robots.base.companion import CAUGHT_UP_M, FALLS_BEHIND_M, GLIMPSE_S
 from mend.robots.base.floor_ways import FloorWays
 from mend.robots.link.messages import Finished, Interrupt, IssueDetected, Look, Looked, Resume
@@ -282,3 +283,24 @@ def test_no_robot_drives_on_for_long_without_who_follows(
         if left_s > GLIMPSE_S + brakes_s:
             assert bench.world.robots[0].velocity().speed_m_s < 0.05
     assert bench.world.touches == 0
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_nobody_is_pushed_out_of_a_cabin_where_it_has_no_door(seed: int) -> None:
+    bench = bench_of(seed, floors=2, dawdling=0.0)
+    meet(bench)
+    lead(bench, "F2-201")
+    guest, robot = guest_of(bench), bench.world.robots[0]
+    left = 0
+    while bench.group.advance(0.05):
+        stop = bench.world.elevators.stop_around(guest)
+        if stop is None or robot.at.floor != "F2":
+            continue
+        off = guest.at.x - stop[0], guest.at.y - stop[1]
+        towards = robot.at.x - stop[0], robot.at.y - stop[1]
+        is_out = math.hypot(*towards) > CABIN_M + robot.radius_m
+        left += is_out
+        behind_m = -(off[0] * towards[0] + off[1] * towards[1]) / max(math.hypot(*towards), 1e-6)
+        assert not is_out or behind_m < CABIN_M - RADIUS_M + 0.02
+    assert left, "it has ridden along"
+    assert len(bench.of(Finished)) == 2
