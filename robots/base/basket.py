@@ -26,6 +26,10 @@ class BasketMemory:
     offered: tuple[str, str] | None = None
     handed_over: dict[str, str] = field(default_factory=dict)
 
+    def offers(self, item: str, place: str) -> bool:
+        """Whether it has offered this at this place since it got there."""
+        return self.offered == (item, place)
+
     def note_given(self, item: str, load_kg: float) -> None:
         """Something was put in, and the load cell now shows this."""
         self.items[item] = load_kg - (self.expected_kg or 0.0)

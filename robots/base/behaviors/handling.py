@@ -34,6 +34,9 @@ class Handling:
     def hand_over(self, step: AwaitTaken) -> Routine[None]:
         """Wait until the item is taken out of the basket. Raises `Interruption`."""
         base, memory = self._base, self._base.basket.memory
+        if not memory.offers(step.item, step.place):
+            # What is gone by now was taken before anybody was offered it.
+            self._watch.check()
         memory.offered = (step.item, step.place)
         base.basket.offer(step.item, step.place)
         weight_kg = memory.items[step.item]
