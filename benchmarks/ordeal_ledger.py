@@ -20,6 +20,7 @@ from dispatch_ledger import leads
 
 from mend.fleet.requests import LegAction
 from mend.maps.building.building import Building
+from mend.robots.base.basket import FELT_KG, UNSURE_KG
 from mend.robots.base.behaviors.behavior import MEETS_M
 from mend.server.fleets.leg_task import item_of
 from mend.server.fleets.place_names import PlaceNames
@@ -81,9 +82,31 @@ class Truth:
 
     @property
     def items(self) -> dict[str, list[Any]]:
-        """Where everything is in the end: place, robot, taken, delivered."""
+        """Where everything is in the end: place, robot, taken, delivered; and its kg."""
         last = next((e for e in reversed(self.kept) if "items" in e.body), None)
         return {} if last is None else last.body["items"]
+
+    def felt_alike_s(self, item: str) -> Iterator[float]:
+        """When its robot offered it, and lost it, or what weighs about as much, to somebody else.
+
+        A load cell does not tell who takes what.
+        """
+        before: dict[str, list[Any]] = {}
+        for line in self.kept:
+            stolen = line.what == "stolen" and line.body["offers"] == item
+            if stolen and _weigh_alike(before[item], before[line.body["item"]]):
+                yield line.t
+            now, offered = line.body.get("items"), before.get(item)
+            if now is None:
+                continue
+            for name, (place, _, _, delivered, _) in now.items():
+                was = before.get(name)
+                if name == item or was is None or offered is None or offered[1] is None:
+                    continue
+                mistaken = was[1] == offered[1] and place is not None and not delivered
+                if mistaken and _weigh_alike(was, offered):
+                    yield line.t
+            before = now
 
     @cached_property
     def states(self) -> list[Line]:
@@ -162,6 +185,13 @@ class OrdealLedger:
         )
         found["event of the journal"] = len(self._rows)
         found["stolen"] = sum(each.what == "stolen" for each in self._truth.kept)
+        found["taken by who it was not for"] = sum(
+            each.what == "stolen" and each.body["offers"] == each.body["item"]
+            for each in self._truth.kept
+        )
+        found += Counter(
+            f"killed {e.body['whom']}" for e in self._truth.lines if e.what == "killed"
+        )
         found["carried"] = sum(each.what == "carried" for each in self._truth.kept)
         found["promise not kept"] = sum(bool(e.body.get("lied")) for e in self._truth.kept)
         found["life of the world"] = self._truth.lives
@@ -270,8 +300,17 @@ class OrdealLedger:
             had = any(e and e[1] == number and not e[2] for e in where)
             if action in FETCHES and not had and not _something_else(there_was, number):
                 yield f"{said}, and it was never in the basket: {where[-1]}"
-            if action in BRINGS and not any(e and e[0] == there for e in where):
+            brought = any(e and e[0] == there for e in where)
+            if action in BRINGS and not brought and not self._felt_alike(item, span):
                 yield f"{said}, and it is not there: {where[-1]}"
+
+    def _felt_alike(self, item: str, span: tuple[float, float]) -> bool:
+        """Whether its robot could not feel in a span that nobody took it for whom it was."""
+        begun_s, ended_s = span
+        return any(
+            begun_s - SPARE_S <= each <= ended_s + SPARE_S
+            for each in self._truth.felt_alike_s(item)
+        )
 
     def _had(self, number: int, begun: dict[str, Any]) -> bool:
         """Whether a robot had in its basket already what a leg is to fetch."""
@@ -307,7 +346,7 @@ class OrdealLedger:
     def _loads(self) -> Iterator[str]:
         for line in self._truth.kept:
             aboard: dict[int, list[str]] = defaultdict(list)
-            for name, (_, robot, taken, _) in line.body.get("items", {}).items():
+            for name, (_, robot, taken, _, _) in line.body.get("items", {}).items():
                 if robot is not None and not taken:
                     aboard[robot].append(name)
             for robot, names in aboard.items():
@@ -325,7 +364,7 @@ class OrdealLedger:
                 continue
             for name in before.keys() - now.keys():
                 yield f"{line.t:.1f} s: '{name}' is nowhere any more"
-            for name, (place, _, _, delivered) in now.items():
+            for name, (place, _, _, delivered, _) in now.items():
                 was = before.get(name)
                 if place is not None and delivered and was is not None and was[0] is None:
                     brought[name, place] += 1
@@ -345,12 +384,17 @@ class OrdealLedger:
             said = f"{last['at_s']:.1f} s: '{name}' is {status}"
             if status == "done":
                 there = self._names.in_scene(what["destination"])
-                if item is None or item[0] != there or not item[3]:
+                brought = item is not None and item[0] == there and item[3]
+                if not brought and not any(self._truth.felt_alike_s(item_of(what["what"], name))):
                     yield f"{said}, and not at {there}: {item}"
             elif item is None or item[0] is not None or item[2]:
                 continue
             elif "for a person to take it" not in reason:
                 yield f"{said} ({reason}), and is still in the basket of robot {item[1]}"
+
+
+def _weigh_alike(one: list[Any], other: list[Any]) -> bool:
+    return abs(one[4] - other[4]) < FELT_KG + UNSURE_KG
 
 
 def _something_else(there_was: list[dict[str, list[Any]]], number: int) -> bool:
