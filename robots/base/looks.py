@@ -41,7 +41,7 @@ def look_as_told(
     if look.expect == "located":
         return _look_where(base, command, look)
     if look.expect in ("loaded", "unloaded"):
-        return _feel(base, command, look.within_s, held)
+        return _feel(base, command, look, held)
     if look.expect == "charged":
         return _until(base, command, look.within_s, lambda: base.battery.charging)
     if look.expect == "accompanied":
@@ -65,13 +65,18 @@ def _look_ahead(base: Base, command: str, look: Look, held: AnyExecution | None)
     return answer(base, command, fulfilled=True, led_round=ahead is WayAhead.ROUND)
 
 
-def _feel(base: Base, command: str, within_s: float, held: AnyExecution | None) -> Routine[Looked]:
-    """Whether the basket holds what the step that waits needs, or else what was in it before."""
+def _feel(base: Base, command: str, look: Look, held: AnyExecution | None) -> Routine[Looked]:
+    """Whether the basket holds what the step that waits needs, or else what was in it before.
+
+    Who has begun anew and waits with no step still knows what it had asked for, or offered.
+    """
 
     def felt() -> FeltLoad | None:
-        return held.felt() if isinstance(held, BaseExecution) else base.load.as_remembered()
+        if isinstance(held, BaseExecution):
+            return held.felt()
+        return base.load.as_offered() if look.expect == "unloaded" else base.load.as_asked()
 
-    end_s = base.body.time_s() + within_s
+    end_s = base.body.time_s() + look.within_s
     while (told := felt()) is not None:
         left_s = end_s - base.body.time_s()
         if left_s <= 1e-9:

@@ -84,6 +84,9 @@ class BaseExecution(Execution[BaseProgress]):
         """What the basket feels that is not what the step under way, or else the next, needs."""
         left, load = self._progress.steps[self._done :], self._base.load
         memory = self._base.basket.memory
+        if self._progress.taken is None:
+            # It has not asked for anything yet, or anew.
+            return load.as_remembered()
         match left[0] if left else None:
             case AwaitItem():
                 return load.given()
@@ -128,6 +131,7 @@ class BaseExecution(Execution[BaseProgress]):
         progress.wait = progress.standing = progress.alone_since_s = None
         self._base.company.start_anew()
         self._forget_offers_elsewhere()
+        self._base.basket.memory.asked = None
         self._invite()
         self._watch.check()
         yield from self._find_out()

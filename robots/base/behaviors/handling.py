@@ -26,6 +26,7 @@ class Handling:
     def receive(self, step: AwaitItem) -> Routine[None]:
         """Wait until something is put into the basket. Raises `Interruption`."""
         base = self._base
+        base.basket.memory.asked = (step.item, step.place)
         base.basket.ask_for(step.item, step.place)
         yield from self._await(step, until=lambda: base.load.given() is None)
         base.basket.withdraw()

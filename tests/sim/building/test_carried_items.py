@@ -266,6 +266,49 @@ def test_a_building_is_rebuilt_with_everything_in_its_basket() -> None:
     assert again.world.goods.items["mail"].robot == 0  # type: ignore[attr-defined]
 
 
+def begun_anew(bench: BuildingBench) -> BuildingBench:
+    """The same world in another life: its robots have lost what they were doing."""
+    return BuildingBench(bench.scene, snapshot=json.loads(json.dumps(bench.group.snapshot())))
+
+
+def test_who_has_begun_anew_feels_no_more_than_there_is_in_its_basket() -> None:
+    bench = BuildingBench()
+    asks(bench, HERE, "collect_item", item="mail")
+    again = begun_anew(bench)
+    assert feels(again, "loaded").felt == "nothing"
+    assert again.world.intervene(PUT_IN) == ""
+    assert feels(again, "loaded").fulfilled
+    again.go(ROBOT, HERE, "collect_item", item="mail")
+    again.run()
+    assert len(again.of(Finished)) == 1
+
+
+def test_who_has_begun_anew_feels_no_less_than_there_is_in_its_basket() -> None:
+    bench = with_mail(BuildingBench())
+    asks(bench, THERE, "hand_over_item", item="mail")
+    again = begun_anew(bench)
+    assert feels(again, "unloaded").felt == "nothing"
+    assert again.world.intervene(TAKE_OUT) == ""
+    assert feels(again, "unloaded").fulfilled
+    again.go(ROBOT, THERE, "hand_over_item", item="mail")
+    again.run()
+    assert len(again.of(Finished)) == 1
+
+
+def test_what_was_taken_while_something_else_was_asked_for_comes_back() -> None:
+    bench = with_mail(BuildingBench())
+    issue = asks(bench, HERE, "collect_item", item="keys")
+    assert bench.world.intervene(Intervention(act=Act.STEAL, object="mail")) == ""
+    bench.send(ROBOT, Resume(execution=issue.execution))
+    assert bench.run_until(IssueDetected).issue == "item_taken"
+    bench.run()
+    assert feels(bench, "loaded").felt == "lighter"
+    assert bench.world.intervene(PUT_IN) == ""
+    assert feels(bench, "loaded").fulfilled
+    bench.send(ROBOT, Resume(execution=issue.execution))
+    assert bench.run_until(IssueDetected).issue == "item_not_given"
+
+
 def test_a_robot_misses_what_was_taken_out_for_nobody() -> None:
     bench = with_mail(BuildingBench(robots=2))
     assert bench.world.intervene(Intervention(act=Act.STEAL, object="mail")) == ""
