@@ -9,6 +9,7 @@ import math
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
@@ -18,6 +19,7 @@ from chaos_ledger import Ledger, Row
 from chaos_witness import Witness
 from dispatch_ledger import leads
 
+from mend.dialogue.evidence import Change
 from mend.fleet.requests import LegAction
 from mend.maps.building.building import Building
 from mend.robots.base.basket import FELT_KG, UNSURE_KG
@@ -86,6 +88,23 @@ class Truth:
         last = next((e for e in reversed(self.kept) if "items" in e.body), None)
         return {} if last is None else last.body["items"]
 
+    def baskets_between(
+        self, begun_s: float, ended_s: float, number: int
+    ) -> Iterator[frozenset[str]]:
+        """What was in the basket of a robot in a span of wall time, and just before."""
+        last: frozenset[str] = frozenset()
+        for each in self.kept:
+            if "items" not in each.body or each.body["wall_s"] > ended_s:
+                continue
+            items = each.body["items"].items()
+            now = frozenset(
+                n for n, (_, robot, taken, *_) in items if robot == number and not taken
+            )
+            if each.body["wall_s"] >= begun_s:
+                yield last
+            last = now
+        yield last
+
     def felt_alike_s(self, item: str) -> Iterator[float]:
         """When its robot offered it, and lost it, or what weighs about as much, to somebody else.
 
@@ -153,6 +172,8 @@ class OrdealLedger:
         self._names = PlaceNames(setting.building, setting.scene)
         self._rows = self._journal.rows
         self._what: dict[str, list[Row]] = defaultdict(list)
+        self._unnoticed: set[str] = set()
+        """What was handed over to somebody else, or something else for it: nobody could know."""
         for row in self._of("request_changed"):
             self._what[row.body["request"]].append(row)
 
@@ -166,6 +187,7 @@ class OrdealLedger:
             *self._truth.faults,
             *self._touches(),
             *self._runs(),
+            *self._felt(),
             *self._requests(),
             *self._legs(),
             *self._loads(),
@@ -221,6 +243,27 @@ class OrdealLedger:
                 begun.discard(row.run)
             if row.kind == "node_reset" and "the robot refused" in row.body["reason"]:
                 yield f"event {row.seq}: {row.body['robot']}: {row.body['reason']}"
+
+    # --- What robots say of their baskets -------------------------------------------------------
+
+    def _felt(self) -> Iterator[str]:
+        """What a robot says to feel in its basket, since it asked, really was put in or taken."""
+        asked: dict[str, datetime] = {}
+        for row in self._of("dialogue_opened", "help_verified"):
+            dialogue, at = row.body["dialogue"], datetime.fromisoformat(row.body["wall_time"])
+            if row.kind == "dialogue_opened":
+                asked[dialogue] = at
+                continue
+            change = row.body["change"]
+            if change not in (Change.LOADED, Change.UNLOADED):
+                continue
+            number = self._setting.robots.index(row.body["robot"])
+            span = asked[dialogue].timestamp(), at.timestamp() + MOMENT_S
+            steps = pairwise(self._truth.baskets_between(*span, number))
+            if not any(
+                (now - before if change == Change.LOADED else before - now) for before, now in steps
+            ):
+                yield f"event {row.seq}: {row.body['robot']} feels its basket {change}: it is not"
 
     # --- Requests -------------------------------------------------------------------------------
 
@@ -300,9 +343,11 @@ class OrdealLedger:
             had = any(e and e[1] == number and not e[2] for e in where)
             if action in FETCHES and not had and not _something_else(there_was, number):
                 yield f"{said}, and it was never in the basket: {where[-1]}"
-            brought = any(e and e[0] == there for e in where)
-            if action in BRINGS and not brought and not self._felt_alike(item, span):
-                yield f"{said}, and it is not there: {where[-1]}"
+            if action in BRINGS and not any(e and e[0] == there for e in where):
+                if self._felt_alike(item, span) or _something_else_brought(there_was, number):
+                    self._unnoticed.add(ended["booking"])
+                else:
+                    yield f"{said}, and it is not there: {where[-1]}"
 
     def _felt_alike(self, item: str, span: tuple[float, float]) -> bool:
         """Whether its robot could not feel in a span that nobody took it for whom it was."""
@@ -385,7 +430,7 @@ class OrdealLedger:
             if status == "done":
                 there = self._names.in_scene(what["destination"])
                 brought = item is not None and item[0] == there and item[3]
-                if not brought and not any(self._truth.felt_alike_s(item_of(what["what"], name))):
+                if not brought and name not in self._unnoticed:
                     yield f"{said}, and not at {there}: {item}"
             elif item is None or item[0] is not None or item[2]:
                 continue
@@ -395,6 +440,15 @@ class OrdealLedger:
 
 def _weigh_alike(one: list[Any], other: list[Any]) -> bool:
     return abs(one[4] - other[4]) < FELT_KG + UNSURE_KG
+
+
+def _something_else_brought(there_was: list[dict[str, list[Any]]], number: int) -> bool:
+    """Whether somebody took out what was put in for the thing that was to be put in."""
+    return any(
+        name.startswith("something else") and was[1] == number and after[name][1] is None
+        for before, after in pairwise(there_was)
+        for name, was in before.items()
+    )
 
 
 def _something_else(there_was: list[dict[str, list[Any]]], number: int) -> bool:

@@ -9,6 +9,7 @@ the world; a world that was killed begins anew where the journal has it, with a 
 import json
 import math
 import os
+import time
 from collections.abc import Iterator
 from itertools import combinations
 from pathlib import Path
@@ -197,7 +198,8 @@ class Witness:
             yield f"guest of robot {n}", guest.at, PERSON_RADIUS_M
 
     def _write(self, what: str, **more: Any) -> None:
-        line = json.dumps({"t": round(self._world.time_s(), 3), "what": what, **more})
+        when = {"t": round(self._world.time_s(), 3), "wall_s": round(time.time(), 3)}
+        line = json.dumps({**when, "what": what, **more})
         os.write(self._file, line.encode() + b"\n")
 
 
