@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from mend.robots.base.base import Base
 from mend.robots.base.behaviors.execution import BaseExecution
+from mend.robots.base.companion import CAUGHT_UP_M
 from mend.robots.base.way_ahead import WayAhead
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import AnyExecution
@@ -45,7 +46,7 @@ def look_as_told(
     if look.expect == "charged":
         return _until(base, command, look.within_s, lambda: base.battery.charging)
     if look.expect == "accompanied":
-        return _until(base, command, look.within_s, lambda: _is_accompanied(held))
+        return _until(base, command, look.within_s, lambda: _is_accompanied(base, held))
     if look.expect not in (None, "way_clear"):
         raise CommandError(f"a base that drives cannot look for '{look.expect}'")
 
@@ -104,8 +105,10 @@ def _until(base: Base, command: str, within_s: float, so: Callable[[], bool]) ->
     return answer(base, command, fulfilled=True)
 
 
-def _is_accompanied(held: AnyExecution | None) -> bool:
-    return isinstance(held, BaseExecution) and held.accompanied()
+def _is_accompanied(base: Base, held: AnyExecution | None) -> bool:
+    if isinstance(held, BaseExecution):
+        return held.accompanied()
+    return base.company.is_within(CAUGHT_UP_M)
 
 
 def _look_there(base: Base, command: str, guess: str) -> Routine[Looked]:

@@ -77,3 +77,16 @@ def test_no_robot_feels_who_takes_what_it_offers_or_what_weighs_as_much(
     begun = {"t": 0.0, "what": "begun", "items": basket()}
     truth = Truth(written(tmp_path, [begun, {"t": 6.0, **went}]))
     assert list(truth.felt_alike_s("tea")) == told
+
+
+def test_what_was_in_a_basket_in_a_span_and_just_before(tmp_path: Path) -> None:
+    lines = [
+        {"t": 0.0, "wall_s": 100.0, "what": "begun", "items": IN_BASKET},
+        {"t": 5.0, "wall_s": 101.0, "what": "items", "items": WITH_ANN},
+        {"t": 6.0, "wall_s": 102.0, "what": "items", "items": IN_BASKET},
+    ]
+    truth = Truth(written(tmp_path, lines))
+    held, empty = frozenset({"tea"}), frozenset[str]()
+    assert list(truth.baskets_between(100.5, 101.5, 0)) == [held, empty]
+    assert list(truth.baskets_between(100.5, 101.5, 1)) == [empty, empty]
+    assert list(truth.baskets_between(100.2, 100.8, 0)) == [held]

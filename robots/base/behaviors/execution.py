@@ -61,6 +61,13 @@ class BaseExecution(Execution[BaseProgress]):
         self._done = 0
         self._asked_whether_heard = False
 
+    def pass_by(self) -> None:
+        """Take what it is to drive for done where it stands there already."""
+        for step in self._progress.steps[self._done :]:
+            if not (isinstance(step, Drive) and self._driving.is_about_at(step)):
+                return
+            self._done += 1
+
     def way_ahead(self) -> WayAhead:
         """Whether the step under way, or else the next, could be taken, as far as is seen."""
         left = self._progress.steps[self._done :]
