@@ -37,6 +37,7 @@ SPARE_S = 1.0
 MOMENT_S = 0.6
 """The witness writes something so often at least."""
 BEGINS_S = 60.0
+QUOTE = "'"
 BRINGS = (LegAction.HAND_OVER, LegAction.GIVE, LegAction.BRING_BACK)
 FETCHES = (LegAction.COLLECT, LegAction.TAKE)
 
@@ -104,6 +105,12 @@ class Truth:
                 yield last
             last = now
         yield last
+
+    def shut_between(self, begun_s: float, ended_s: float) -> Iterator[list[str]]:
+        """Which doors were shut in a span of wall time, also in what a kill undid."""
+        for each in self.lines:
+            if each.what == "state" and begun_s <= each.body["wall_s"] <= ended_s:
+                yield each.body["shut"]
 
     def felt_alike_s(self, item: str) -> Iterator[float]:
         """When its robot offered it, and lost it, or what weighs about as much, to somebody else.
@@ -188,6 +195,7 @@ class OrdealLedger:
             *self._touches(),
             *self._runs(),
             *self._felt(),
+            *self._doors(),
             *self._requests(),
             *self._legs(),
             *self._loads(),
@@ -264,6 +272,30 @@ class OrdealLedger:
                 (now - before if change == Change.LOADED else before - now) for before, now in steps
             ):
                 yield f"event {row.seq}: {row.body['robot']} feels its basket {change}: it is not"
+
+    # --- What robots say of doors ---------------------------------------------------------------
+
+    def _doors(self) -> Iterator[str]:
+        """A door that is said to be shut was so, and one that is seen open since then was that."""
+        raised: dict[str, tuple[str, float]] = {}
+        for row in self._of("issue_raised", "help_verified"):
+            body = row.body
+            if body["issue"] != "door_closed":
+                continue
+            at_s = datetime.fromisoformat(body["wall_time"]).timestamp()
+            if row.kind == "issue_raised":
+                detection = body["detection"]
+                floor, named = detection["between"][0].split("/")[0], detection["explanation"]
+                door = f"{floor}/{named.split(QUOTE)[1]}"
+                raised[body["robot"]] = door, at_s
+                shut = list(self._truth.shut_between(at_s - MOMENT_S, at_s + MOMENT_S))
+                if not any(door in each for each in shut):
+                    yield f"event {row.seq}: {body['robot']} says that {door} is shut: it is not"
+            elif body["change"] == Change.CLEARED:
+                door, raised_s = raised[body["robot"]]
+                shut = list(self._truth.shut_between(raised_s, at_s + MOMENT_S))
+                if all(door in each for each in shut):
+                    yield f"event {row.seq}: {body['robot']} sees {door} open: it is shut"
 
     # --- Requests -------------------------------------------------------------------------------
 

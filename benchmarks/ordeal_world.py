@@ -171,6 +171,7 @@ class Witness:
         self._write(
             "state",
             robots=[[e.at.floor, round(e.at.x, 3), round(e.at.y, 3)] for e in world.robots],
+            shut=[name for name, each in world.doors.items() if each.is_shut],
             guests={
                 number: [each.person, each.at.floor, round(each.at.x, 3), round(each.at.y, 3)]
                 for number, each in world.guests.there.items()
