@@ -55,14 +55,19 @@ def write_kills(kills: list[Kill], truth: Path) -> None:
     _plan_of(truth).write_text(json.dumps([asdict(each) for each in kills]))
 
 
+def kills_so_far(truth: Path) -> int:
+    """How many the truth tells of."""
+    return truth.read_text().count('"what": "killed"') if truth.exists() else 0
+
+
 class Executioner:
     """Kills in a world's process, or its service's, as was written, from where a kill left it."""
 
     def __init__(self, truth: Path, write: Callable[..., None], *, apart: bool) -> None:
         """`write`: has the truth tell of something; `apart`: it is not in the service's process."""
-        plan, written = _plan_of(truth), truth.read_text() if truth.exists() else ""
+        plan = _plan_of(truth)
         drawn: list[dict[str, Any]] = json.loads(plan.read_text()) if plan.exists() else []
-        self._left = [Kill(**each) for each in drawn[written.count('"what": "killed"') :]]
+        self._left = [Kill(**each) for each in drawn[kills_so_far(truth) :]]
         self._write, self._service = write, os.getppid() if apart else os.getpid()
 
     def look(self, now_s: float, *, changed_hands: bool) -> None:

@@ -19,7 +19,7 @@ from uuid import UUID
 import ordeal_world
 from chaos_witness import Witness
 from ordeal_happenings import OVER, NothingToDoError, SiteHappenings
-from ordeal_kills import draw_kills, write_kills
+from ordeal_kills import draw_kills, kills_so_far, write_kills
 from ordeal_ledger import OrdealLedger, Setting, Truth
 from ordeal_people import People, is_near
 from service_process import ServiceProcess
@@ -55,6 +55,8 @@ STANDS_STILL_S = 180.0
 DIES_S = 10.0
 """What does not answer, and has not ended for so long, was not killed (wall time)."""
 KILLED_AGAIN = 0.2
+LATEST_S = 120.0
+"""Kills come so much later than what happens at the latest, by the site's clock."""
 SETTINGS = {
     "MEND_SPEECH_VOICE": "none",
     "MEND_SPEECH_RECOGNITION": "false",
@@ -231,7 +233,7 @@ class BuildingOrdeal:
     ) -> FleetView:
         fleet = await self._look(client, site)
         next_s = 0.0
-        while fleet.now_s < self._ends_s:
+        while fleet.now_s < self._ends_s or self._awaits_kills(fleet.now_s):
             if fleet.now_s >= next_s or not await self._goes_on(client, site):
                 next_s = fleet.now_s + self._chance.expovariate(1.0 / GAP_S)
                 try:
@@ -244,6 +246,10 @@ class BuildingOrdeal:
                 await asyncio.sleep(LOOKS_EVERY_S)
             fleet = await self._look(client, site)
         return fleet
+
+    def _awaits_kills(self, now_s: float) -> bool:
+        """Whether some that were drawn have not come: while things happen the clock goes on."""
+        return now_s < self._ends_s + LATEST_S and kills_so_far(self.truth) < len(self.kills)
 
     async def _goes_on(self, client: MendClient, site: UUID) -> bool:
         """Whether anything is open: else its clock stands."""

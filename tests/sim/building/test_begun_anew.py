@@ -5,9 +5,10 @@ import json
 from building_bench import BuildingBench, made_up
 
 from mend.maps.building.building import Building, BuildingDocument, Caller
-from mend.robots.link.messages import IssueDetected, Look, Looked
+from mend.robots.link.messages import IssueDetected, Look, Looked, Resume
 from mend.sim.building.scene import scene_of
 from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scene import Scene
 
 ROBOT = "robot1"
 HELP = Intervention(act=Act.RELEASE)
@@ -36,12 +37,16 @@ def test_a_door_that_is_still_shut_is_seen_shut_until_somebody_opens_it() -> Non
     assert sees_way(again, room, 5.0)
 
 
-def test_an_elevator_that_has_not_come_is_not_seen_until_somebody_calls_it() -> None:
-    document = made_up(floors=2).document.model_dump(mode="json")
+def called_by_people(floors: int) -> Scene:
+    document = made_up(floors=floors).document.model_dump(mode="json")
     for each in document["elevators"].values():
         each["called_by"] = Caller.PEOPLE
     building = Building(BuildingDocument.model_validate_json(json.dumps(document)))
-    bench = BuildingBench(scene_of(building, "office", 1))
+    return scene_of(building, "office", 1)
+
+
+def test_an_elevator_that_has_not_come_is_not_seen_until_somebody_calls_it() -> None:
+    bench = BuildingBench(called_by_people(2))
     bench.go(ROBOT, "F2-201")
     assert bench.run_until(IssueDetected).issue == "elevator_help"
     bench.run()
@@ -49,6 +54,25 @@ def test_an_elevator_that_has_not_come_is_not_seen_until_somebody_calls_it() -> 
     assert not sees_way(again, "F2-201", 3.0)
     assert again.world.intervene(HELP) == ""
     assert sees_way(again, "F2-201", 60.0)
+
+
+def test_a_wrong_floor_is_none_to_get_out_at_until_somebody_presses_another_button() -> None:
+    bench = BuildingBench(called_by_people(3), wrong_floors=1.0)
+    bench.go(ROBOT, "F2-201")
+    issue = bench.run_until(IssueDetected)
+    bench.run()
+    assert bench.world.intervene(HELP) == ""
+    assert sees_way(bench, "F2-201", 60.0)
+    bench.send(ROBOT, Resume(execution=issue.execution))
+    assert bench.run_until(IssueDetected).issue == "wrong_floor"
+    bench.run()
+    again = begun_anew(bench)
+    assert not sees_way(again, "F2-201", 3.0)
+    assert again.world.intervene(HELP) == ""
+    assert sees_way(again, "F2-201", 60.0)
+    again.go(ROBOT, "F2-201")
+    again.run()
+    assert again.world.robots[0].at.floor == "F2"
 
 
 def who_waits(seed: int) -> BuildingBench:
