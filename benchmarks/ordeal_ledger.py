@@ -9,6 +9,7 @@ import math
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
@@ -18,8 +19,10 @@ from chaos_ledger import Ledger, Row
 from chaos_witness import Witness
 from dispatch_ledger import leads
 
+from mend.dialogue.evidence import Change
 from mend.fleet.requests import LegAction
 from mend.maps.building.building import Building
+from mend.robots.base.basket import FELT_KG, UNSURE_KG
 from mend.robots.base.behaviors.behavior import MEETS_M
 from mend.server.fleets.leg_task import item_of
 from mend.server.fleets.place_names import PlaceNames
@@ -34,6 +37,7 @@ SPARE_S = 1.0
 MOMENT_S = 0.6
 """The witness writes something so often at least."""
 BEGINS_S = 60.0
+QUOTE = "'"
 BRINGS = (LegAction.HAND_OVER, LegAction.GIVE, LegAction.BRING_BACK)
 FETCHES = (LegAction.COLLECT, LegAction.TAKE)
 
@@ -81,9 +85,54 @@ class Truth:
 
     @property
     def items(self) -> dict[str, list[Any]]:
-        """Where everything is in the end: place, robot, taken, delivered."""
+        """Where everything is in the end: place, robot, taken, delivered; and its kg."""
         last = next((e for e in reversed(self.kept) if "items" in e.body), None)
         return {} if last is None else last.body["items"]
+
+    def baskets_between(
+        self, begun_s: float, ended_s: float, number: int
+    ) -> Iterator[frozenset[str]]:
+        """What was in the basket of a robot in a span of wall time, and just before."""
+        last: frozenset[str] = frozenset()
+        for each in self.kept:
+            if "items" not in each.body or each.body["wall_s"] > ended_s:
+                continue
+            items = each.body["items"].items()
+            now = frozenset(
+                n for n, (_, robot, taken, *_) in items if robot == number and not taken
+            )
+            if each.body["wall_s"] >= begun_s:
+                yield last
+            last = now
+        yield last
+
+    def shut_between(self, begun_s: float, ended_s: float) -> Iterator[list[str]]:
+        """Which doors were shut in a span of wall time, also in what a kill undid."""
+        for each in self.lines:
+            if each.what == "state" and begun_s <= each.body["wall_s"] <= ended_s:
+                yield each.body["shut"]
+
+    def felt_alike_s(self, item: str) -> Iterator[float]:
+        """When its robot offered it, and lost it, or what weighs about as much, to somebody else.
+
+        A load cell does not tell who takes what.
+        """
+        before: dict[str, list[Any]] = {}
+        for line in self.kept:
+            stolen = line.what == "stolen" and line.body["offers"] == item
+            if stolen and _weigh_alike(before[item], before[line.body["item"]]):
+                yield line.t
+            now, offered = line.body.get("items"), before.get(item)
+            if now is None:
+                continue
+            for name, (place, _, _, delivered, _) in now.items():
+                was = before.get(name)
+                if name == item or was is None or offered is None or offered[1] is None:
+                    continue
+                mistaken = was[1] == offered[1] and place is not None and not delivered
+                if mistaken and _weigh_alike(was, offered):
+                    yield line.t
+            before = now
 
     @cached_property
     def states(self) -> list[Line]:
@@ -130,6 +179,8 @@ class OrdealLedger:
         self._names = PlaceNames(setting.building, setting.scene)
         self._rows = self._journal.rows
         self._what: dict[str, list[Row]] = defaultdict(list)
+        self._unnoticed: set[str] = set()
+        """What was handed over to somebody else, or something else for it: nobody could know."""
         for row in self._of("request_changed"):
             self._what[row.body["request"]].append(row)
 
@@ -143,6 +194,8 @@ class OrdealLedger:
             *self._truth.faults,
             *self._touches(),
             *self._runs(),
+            *self._felt(),
+            *self._doors(),
             *self._requests(),
             *self._legs(),
             *self._loads(),
@@ -162,6 +215,13 @@ class OrdealLedger:
         )
         found["event of the journal"] = len(self._rows)
         found["stolen"] = sum(each.what == "stolen" for each in self._truth.kept)
+        found["taken by who it was not for"] = sum(
+            each.what == "stolen" and each.body["offers"] == each.body["item"]
+            for each in self._truth.kept
+        )
+        found += Counter(
+            f"killed {e.body['whom']}" for e in self._truth.lines if e.what == "killed"
+        )
         found["carried"] = sum(each.what == "carried" for each in self._truth.kept)
         found["promise not kept"] = sum(bool(e.body.get("lied")) for e in self._truth.kept)
         found["life of the world"] = self._truth.lives
@@ -191,6 +251,51 @@ class OrdealLedger:
                 begun.discard(row.run)
             if row.kind == "node_reset" and "the robot refused" in row.body["reason"]:
                 yield f"event {row.seq}: {row.body['robot']}: {row.body['reason']}"
+
+    # --- What robots say of their baskets -------------------------------------------------------
+
+    def _felt(self) -> Iterator[str]:
+        """What a robot says to feel in its basket, since it asked, really was put in or taken."""
+        asked: dict[str, datetime] = {}
+        for row in self._of("dialogue_opened", "help_verified"):
+            dialogue, at = row.body["dialogue"], datetime.fromisoformat(row.body["wall_time"])
+            if row.kind == "dialogue_opened":
+                asked[dialogue] = at
+                continue
+            change = row.body["change"]
+            if change not in (Change.LOADED, Change.UNLOADED):
+                continue
+            number = self._setting.robots.index(row.body["robot"])
+            span = asked[dialogue].timestamp(), at.timestamp() + MOMENT_S
+            steps = pairwise(self._truth.baskets_between(*span, number))
+            if not any(
+                (now - before if change == Change.LOADED else before - now) for before, now in steps
+            ):
+                yield f"event {row.seq}: {row.body['robot']} feels its basket {change}: it is not"
+
+    # --- What robots say of doors ---------------------------------------------------------------
+
+    def _doors(self) -> Iterator[str]:
+        """A door that is said to be shut was so, and one that is seen open since then was that."""
+        raised: dict[str, tuple[str, float]] = {}
+        for row in self._of("issue_raised", "help_verified"):
+            body = row.body
+            if body["issue"] != "door_closed":
+                continue
+            at_s = datetime.fromisoformat(body["wall_time"]).timestamp()
+            if row.kind == "issue_raised":
+                detection = body["detection"]
+                floor, named = detection["between"][0].split("/")[0], detection["explanation"]
+                door = f"{floor}/{named.split(QUOTE)[1]}"
+                raised[body["robot"]] = door, at_s
+                shut = list(self._truth.shut_between(at_s - MOMENT_S, at_s + MOMENT_S))
+                if not any(door in each for each in shut):
+                    yield f"event {row.seq}: {body['robot']} says that {door} is shut: it is not"
+            elif body["change"] == Change.CLEARED:
+                door, raised_s = raised[body["robot"]]
+                shut = list(self._truth.shut_between(raised_s, at_s + MOMENT_S))
+                if all(door in each for each in shut):
+                    yield f"event {row.seq}: {body['robot']} sees {door} open: it is shut"
 
     # --- Requests -------------------------------------------------------------------------------
 
@@ -271,7 +376,18 @@ class OrdealLedger:
             if action in FETCHES and not had and not _something_else(there_was, number):
                 yield f"{said}, and it was never in the basket: {where[-1]}"
             if action in BRINGS and not any(e and e[0] == there for e in where):
-                yield f"{said}, and it is not there: {where[-1]}"
+                if self._felt_alike(item, span) or _something_else_brought(there_was, number):
+                    self._unnoticed.add(ended["booking"])
+                else:
+                    yield f"{said}, and it is not there: {where[-1]}"
+
+    def _felt_alike(self, item: str, span: tuple[float, float]) -> bool:
+        """Whether its robot could not feel in a span that nobody took it for whom it was."""
+        begun_s, ended_s = span
+        return any(
+            begun_s - SPARE_S <= each <= ended_s + SPARE_S
+            for each in self._truth.felt_alike_s(item)
+        )
 
     def _had(self, number: int, begun: dict[str, Any]) -> bool:
         """Whether a robot had in its basket already what a leg is to fetch."""
@@ -307,7 +423,7 @@ class OrdealLedger:
     def _loads(self) -> Iterator[str]:
         for line in self._truth.kept:
             aboard: dict[int, list[str]] = defaultdict(list)
-            for name, (_, robot, taken, _) in line.body.get("items", {}).items():
+            for name, (_, robot, taken, _, _) in line.body.get("items", {}).items():
                 if robot is not None and not taken:
                     aboard[robot].append(name)
             for robot, names in aboard.items():
@@ -325,7 +441,7 @@ class OrdealLedger:
                 continue
             for name in before.keys() - now.keys():
                 yield f"{line.t:.1f} s: '{name}' is nowhere any more"
-            for name, (place, _, _, delivered) in now.items():
+            for name, (place, _, _, delivered, _) in now.items():
                 was = before.get(name)
                 if place is not None and delivered and was is not None and was[0] is None:
                     brought[name, place] += 1
@@ -345,12 +461,26 @@ class OrdealLedger:
             said = f"{last['at_s']:.1f} s: '{name}' is {status}"
             if status == "done":
                 there = self._names.in_scene(what["destination"])
-                if item is None or item[0] != there or not item[3]:
+                brought = item is not None and item[0] == there and item[3]
+                if not brought and name not in self._unnoticed:
                     yield f"{said}, and not at {there}: {item}"
             elif item is None or item[0] is not None or item[2]:
                 continue
             elif "for a person to take it" not in reason:
                 yield f"{said} ({reason}), and is still in the basket of robot {item[1]}"
+
+
+def _weigh_alike(one: list[Any], other: list[Any]) -> bool:
+    return abs(one[4] - other[4]) < FELT_KG + UNSURE_KG
+
+
+def _something_else_brought(there_was: list[dict[str, list[Any]]], number: int) -> bool:
+    """Whether somebody took out what was put in for the thing that was to be put in."""
+    return any(
+        name.startswith("something else") and was[1] == number and after[name][1] is None
+        for before, after in pairwise(there_was)
+        for name, was in before.items()
+    )
 
 
 def _something_else(there_was: list[dict[str, list[Any]]], number: int) -> bool:

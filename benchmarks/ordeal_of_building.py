@@ -8,17 +8,18 @@ import sqlite3
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
-from typing import Any
+from typing import Any, Literal, TypeVar
 from uuid import UUID
 
 import ordeal_world
 from chaos_witness import Witness
 from ordeal_happenings import OVER, NothingToDoError, SiteHappenings
+from ordeal_kills import draw_kills, kills_so_far, write_kills
 from ordeal_ledger import OrdealLedger, Setting, Truth
 from ordeal_people import People, is_near
 from service_process import ServiceProcess
@@ -37,6 +38,8 @@ from mend.server.sites.requests import FleetOptions, SiteRequest
 from mend.server.sites.views import SiteView
 from mend.sim.building.scene import scene_of
 
+T = TypeVar("T")
+
 CAPACITY = 3.0
 GAP_S = 6.0
 """Something happens about so often, by the site's clock."""
@@ -49,7 +52,11 @@ PATIENCE_S = 120.0
 """With one answer of the service."""
 STANDS_STILL_S = 180.0
 """A site's clock that stands for so long, while something is open, hangs (wall time)."""
+DIES_S = 10.0
+"""What does not answer, and has not ended for so long, was not killed (wall time)."""
 KILLED_AGAIN = 0.2
+LATEST_S = 120.0
+"""Kills come so much later than what happens at the latest, by the site's clock."""
 SETTINGS = {
     "MEND_SPEECH_VOICE": "none",
     "MEND_SPEECH_RECOGNITION": "false",
@@ -130,7 +137,8 @@ class Outcome:
 class BuildingOrdeal:
     """`minutes`: so long things happen there, by the site's clock; `kills`: how many meanwhile.
 
-    `truth`: what its worlds wrote.
+    `speed`: seconds of the site's clock a second at most, so that there is time for things to
+    happen on any machine. `truth`: what its worlds wrote.
     """
 
     def __init__(
@@ -140,16 +148,19 @@ class BuildingOrdeal:
         minutes: float,
         kills: int,
         tell: Callable[[str], None] = lambda _: None,
+        speed: float | Literal["max"] = "max",
     ) -> None:
-        self._drawn, self._folder, self._tell = drawn, folder, tell
+        self._drawn, self._folder, self._tell, self._speed = drawn, folder, tell, speed
         self._chance = Random(drawn.seed + 3)
         self._ends_s = 60.0 * minutes
-        self._kills_s = sorted(self._chance.uniform(5.0, self._ends_s) for _ in range(kills))
+        self._kills_again = Random(drawn.seed + 4)
         self.building = Building(random_building(drawn.seed, drawn.floors, drawn.rooms))
         rooms = self.building.of_kind(PlaceKind.ROOM)
         self._transfers = tuple(self._chance.sample(rooms, min(4, len(rooms))))
         self.scene = scene_of(self.building, "ordeal", drawn.robots)
         self.truth = folder / "truth.jsonl"
+        self.kills = draw_kills(self._chance, kills, self._ends_s, apart=drawn.apart)
+        write_kills(self.kills, self.truth)
         ordeal_world.install(folder / "worlds")
         paths = [str(folder / "worlds"), *(each for each in sys.path if each)]
         self._service = ServiceProcess(
@@ -206,7 +217,7 @@ class BuildingOrdeal:
             SiteRequest(
                 scene="ordeal",
                 world="witnessed_apart" if self._drawn.apart else "witnessed",
-                speed="max",
+                speed=self._speed,
                 seed=self._drawn.seed,
                 world_options=self._drawn.options,
                 fleet=FleetOptions(capacity=CAPACITY, transfer_places=self._transfers),
@@ -222,11 +233,8 @@ class BuildingOrdeal:
     ) -> FleetView:
         fleet = await self._look(client, site)
         next_s = 0.0
-        while fleet.now_s < self._ends_s:
-            if self._kills_s and fleet.now_s >= self._kills_s[0]:
-                self._kills_s.pop(0)
-                await self._kill()
-            elif fleet.now_s >= next_s or not await self._goes_on(client, site):
+        while fleet.now_s < self._ends_s or self._awaits_kills(fleet.now_s):
+            if fleet.now_s >= next_s or not await self._goes_on(client, site):
                 next_s = fleet.now_s + self._chance.expovariate(1.0 / GAP_S)
                 try:
                     said = await happenings.happen(fleet)
@@ -239,13 +247,17 @@ class BuildingOrdeal:
             fleet = await self._look(client, site)
         return fleet
 
+    def _awaits_kills(self, now_s: float) -> bool:
+        """Whether some that were drawn have not come: while things happen the clock goes on."""
+        return now_s < self._ends_s + LATEST_S and kills_so_far(self.truth) < len(self.kills)
+
     async def _goes_on(self, client: MendClient, site: UUID) -> bool:
         """Whether anything is open: else its clock stands."""
-        views = await client.requests(site)
+        views = await self._answer(lambda: client.requests(site))
         return any(each.status not in OVER for each in views)
 
     async def _look(self, client: MendClient, site: UUID) -> FleetView:
-        fleet = await client.fleet(site)
+        fleet = await self._answer(lambda: client.fleet(site))
         if fleet.now_s != self._last_s:
             self._last_s, self._moved_at = fleet.now_s, time.monotonic()
         elif time.monotonic() - self._moved_at > STANDS_STILL_S:
@@ -253,28 +265,31 @@ class BuildingOrdeal:
         self._note_plan()
         return fleet
 
-    async def _kill(self) -> None:
-        """The service, at times twice in a row; or robots that have a process of their own."""
-        if self._drawn.apart and self._chance.random() < 0.5:
-            worlds = [
-                each for each in self._service.robots()
-                if "mend.sim.robot_process" in " ".join(each.cmdline())
-            ]  # fmt: skip
-            for each in worlds:
-                each.send_signal(signal.SIGKILL)
-            self._outcome.counts["killed robots"] += bool(worlds)
-            self._tell(f"{self._last_s:8.1f} s  killed the robots")
-            return
-        again = True
-        while again:
+    async def _answer(self, ask: Callable[[], Awaitable[T]]) -> T:
+        """What the service says, also if it is killed before it does."""
+        while True:
+            try:
+                return await ask()
+            except UnreachableError:
+                if not await self._was_killed():
+                    raise
+                await self._start_again()
+
+    async def _was_killed(self) -> bool:
+        with suppress(TimeoutError):
+            async with asyncio.timeout(DIES_S):
+                return await self._service.process.wait() == -signal.SIGKILL
+        return False
+
+    async def _start_again(self) -> None:
+        """At times it is killed once more while it starts."""
+        self._tell(f"{self._last_s:8.1f} s  the service was killed")
+        self._note_plan()
+        while self._kills_again.random() < KILLED_AGAIN:
+            await self._service.spawn()
+            await asyncio.sleep(self._kills_again.uniform(0.2, 3.0))
             await self._service.kill()
             self._outcome.counts["killed service"] += 1
-            self._tell(f"{self._last_s:8.1f} s  killed the service")
-            self._note_plan()
-            again = self._chance.random() < KILLED_AGAIN
-            if again:
-                await self._service.spawn()
-                await asyncio.sleep(self._chance.uniform(0.2, 3.0))
         await self._start()
         self._moved_at = time.monotonic()
 
@@ -287,7 +302,7 @@ class BuildingOrdeal:
         self.truth.with_name(self.truth.name + ordeal_world.CALM).touch()
         self._tell(f"{fleet.now_s:8.1f} s  nothing more is to happen")
         while await self._goes_on(client, site):
-            with suppress(RefusedError, NothingToDoError):
+            with suppress(RefusedError, NothingToDoError, UnreachableError):
                 await happenings.calm_down(fleet)
             await asyncio.sleep(LOOKS_EVERY_S)
             fleet = await self._look(client, site)
@@ -302,7 +317,7 @@ class BuildingOrdeal:
         async with asyncio.timeout(STANDS_STILL_S):
             while True:
                 try:
-                    await client.close_site(site)
+                    await self._answer(lambda: client.close_site(site))
                     return
                 except RefusedError:
                     await asyncio.sleep(LOOKS_EVERY_S)

@@ -9,12 +9,14 @@ the world; a world that was killed begins anew where the journal has it, with a 
 import json
 import math
 import os
+import time
 from collections.abc import Iterator
 from itertools import combinations
 from pathlib import Path
 from random import Random
 from typing import Annotated, Any, ClassVar
 
+from ordeal_kills import Executioner
 from pydantic import Field
 
 from mend.sim.building.adapter import BuildingAdapter
@@ -59,7 +61,8 @@ class WitnessedBuilding(BuildingAdapter):
         steals_every_s = float(options.pop("steals_every_s", 0.0))
         group = BUILDINGS.create_agents(setup.model_copy(update={"options": options}))
         assert isinstance(group.world, BuildingWorld)
-        Witness(group.world, lies, steals_every_s, Path(os.environ[TRUTH]))
+        apart = self.own_process
+        Witness(group.world, lies, steals_every_s, setup.seed, Path(os.environ[TRUTH]), apart=apart)
         return group
 
 
@@ -67,16 +70,26 @@ within, apart = WitnessedBuilding(own_process=False), WitnessedBuilding(own_proc
 
 
 class Witness:
-    """Writes down whatever happens in a world, and has people lie and steal in it."""
+    """Writes down whatever happens in a world, has people lie and steal in it, and kills it."""
 
     def __init__(
-        self, world: BuildingWorld, lies: float, steals_every_s: float, file: Path
+        self,
+        world: BuildingWorld,
+        lies: float,
+        steals_every_s: float,
+        seed: int,
+        file: Path,
+        *,
+        apart: bool,
     ) -> None:
+        """`apart`: it has a process of its own."""
         self._world, self._lies, self._calm = world, lies, file.with_name(file.name + CALM)
         self._steals = STATE_EVERY_S / steals_every_s if steals_every_s else 0.0
         self._file = os.open(file, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
-        self._chance = Random()
+        self._chance = Random(f"{seed} {world.time_s()}")
+        self._executioner = Executioner(file, self._write, apart=apart)
         self._items: dict[str, list[Any]] = {}
+        self._changed_hands = False
         self._touching: set[str] = set()
         self._bumps, self._carried, self._shows_s = world.touches, world.carried, 0.0
         self._pass_cycle, self._do = world.advance_cycle, world.intervene
@@ -110,14 +123,26 @@ class Witness:
             self._note_state()
             if self._chance.random() < self._steals and not self._calm.exists():
                 self._steal()
+        self._look_for_kills()
+
+    def _look_for_kills(self) -> None:
+        changed_hands, self._changed_hands = self._changed_hands, False
+        self._executioner.look(self._world.time_s(), changed_hands=changed_hands)
 
     def _steal(self) -> None:
         """Somebody takes a thing out of a basket, if there is any in one."""
-        items = self._world.goods.items.items()
-        aboard = [name for name, each in items if each.robot is not None and not each.taken]
-        if aboard and not self._world.goods.steal(self._chance.choice(aboard)):
+        goods = self._world.goods
+        aboard = [n for n, each in goods.items.items() if each.robot is not None and not each.taken]
+        if not aboard:
+            return
+        name = self._chance.choice(aboard)
+        robot = goods.items[name].robot
+        assert robot is not None, "it is aboard"
+        wish = goods.wishes.get(robot)
+        if not goods.steal(name):
             self._note_items()
-            self._write("stolen")
+            offers = wish.item if wish is not None and wish.hands_over else None
+            self._write("stolen", item=name, robot=robot, offers=offers)
 
     def _intervene(self, intervention: Intervention) -> str:
         self._begin()
@@ -126,18 +151,19 @@ class Witness:
         problem = "somebody said so and did not do it" if lied else self._do(intervention)
         self._note_items()
         self._write("did", act=str(intervention.act), problem=problem, lied=lied)
+        self._look_for_kills()
         return problem
 
     def _items_now(self) -> dict[str, list[Any]]:
         return {
-            name: [each.place, each.robot, each.taken, each.delivered]
+            name: [each.place, each.robot, each.taken, each.delivered, round(each.weight_kg, 3)]
             for name, each in self._world.goods.items.items()
         }
 
     def _note_items(self) -> None:
         now = self._items_now()
         if now != self._items:
-            self._items = now
+            self._items, self._changed_hands = now, True
             self._write("items", items=now)
 
     def _note_state(self) -> None:
@@ -145,6 +171,7 @@ class Witness:
         self._write(
             "state",
             robots=[[e.at.floor, round(e.at.x, 3), round(e.at.y, 3)] for e in world.robots],
+            shut=[name for name, each in world.doors.items() if each.is_shut],
             guests={
                 number: [each.person, each.at.floor, round(each.at.x, 3), round(each.at.y, 3)]
                 for number, each in world.guests.there.items()
@@ -172,7 +199,8 @@ class Witness:
             yield f"guest of robot {n}", guest.at, PERSON_RADIUS_M
 
     def _write(self, what: str, **more: Any) -> None:
-        line = json.dumps({"t": round(self._world.time_s(), 3), "what": what, **more})
+        when = {"t": round(self._world.time_s(), 3), "wall_s": round(time.time(), 3)}
+        line = json.dumps({**when, "what": what, **more})
         os.write(self._file, line.encode() + b"\n")
 
 

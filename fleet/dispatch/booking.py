@@ -15,9 +15,9 @@ AnyRequest = GoToRoom | DeliverMessage | Escort | Transport
 class Booking:
     """One request, or one occurrence of one that recurs, under a name.
 
-    `reason`: why it is not going as it was asked; `attempts`: how often its stop failed;
-    `put_off_since_s`: since when it has no place in the plan; `fails`: it is on its way to
-    `failed`, not to `cancelled`.
+    `reason`: why it is not going as it was asked, or what is known of how it was done;
+    `attempts`: how often its stop failed; `put_off_since_s`: since when it has no place in the
+    plan; `fails`: it is on its way to `failed`, not to `cancelled`.
     """
 
     name: str

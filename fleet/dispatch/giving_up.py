@@ -65,7 +65,8 @@ class GivingUp:
         where, name = self._state.where(self._state.fleet.items[booking.name]), booking.name
         if booking.request.comes_back:
             self._state.apply(Stranded(name), why, {name})
-            booking.reason = f"{booking.reason or why}; it is {where}, for a person to take it"
+            why = booking.reason or why
+            booking.reason = f"{why}; it was last {where}, for a person to take it"
         else:
             self._state.apply(Fetched(name), why, {name})
 

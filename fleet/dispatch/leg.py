@@ -44,7 +44,7 @@ class LegOutcome(StrEnum):
 
 
 class LegEnd(StrictModel):
-    """How a leg ended, and why where it was not done.
+    """How a leg ended, and why where it was not done; else what is known of what was done.
 
     `at`: where the robot is now; None: at the place of the leg.
     """

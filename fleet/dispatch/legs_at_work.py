@@ -77,11 +77,7 @@ class LegsAtWork:
             closes = leg.request.is_visit
             what = f"{leg.robot} is done with '{leg.booking}' at {leg.place}"
             self._state.apply(StopMade(leg.robot, closes), what, (), own=leg.booking)
-            booking = self._state.bookings[leg.booking]
-            booking.attempts = 0
-            if not (booking.fails or self._state.fleet.items[leg.booking].returns):
-                # It goes as it was asked again.
-                booking.reason = None
+            self._tell_done(leg, end)
         elif self._state.fleet.robots[leg.robot].held and end.outcome is not LegOutcome.DONE:
             self._giving_up.failed(leg, end, at)
         else:
@@ -90,6 +86,14 @@ class LegsAtWork:
             )
         self._state.under_way.pop(leg.robot, None)
         self._state.settle()
+
+    def _tell_done(self, leg: Leg, end: LegEnd) -> None:
+        """Of what goes as it was asked again no reason is told; of what is over, what is known."""
+        booking, item = self._state.bookings[leg.booking], self._state.fleet.items[leg.booking]
+        kept = booking.reason if booking.fails or item.returns else None
+        known = None if item.open else end.reason
+        booking.attempts = 0
+        booking.reason = "; ".join(each for each in (kept, known) if each) or None
 
     def times_s(self) -> list[float]:
         """When robots that do nothing are to set out for what they do next."""

@@ -18,7 +18,7 @@ from mend.localization.enml.lost import MapFit, evidence_of
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.prior import whitening_of
 from mend.localization.enml.problem import Floats
-from mend.localization.enml.recovery import Found, Recovery
+from mend.localization.enml.recovery import Found, MayBeAt, Recovery
 from mend.localization.enml.sight import Sight
 from mend.localization.enml.solver import Linearize, Solution, solve
 from mend.localization.localizer import Estimate, PointClass
@@ -52,7 +52,9 @@ class EnmlLocalizer:
         parameters: EnmlParameters | None = None,
         start: Poses | None = None,
         linearize: Linearize = normal_equations.linearize,
+        may_be_at: MayBeAt | None = None,
     ) -> None:
+        """`may_be_at`: no search finds the robot where it cannot be, as outside of a building."""
         self._parameters = parameters or EnmlParameters()
         self._linearize = linearize
         self._long_term = LongTermFeatures(
@@ -67,6 +69,7 @@ class EnmlLocalizer:
             field,
             DEFAULT_MAX_RANGE_M,
             self._parameters,
+            may_be_at,
         )
         self._mode = Mode.TRACKING
         self._evidence = MapFit()

@@ -1,5 +1,6 @@
 """Finding a lost robot again: what it saw since, laid over the map near by, then everywhere."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
 
@@ -44,6 +45,10 @@ _BEHIND_COUNTS = 8.0
 """Right places have hardly any return from behind a wall, those that look alike a few percent."""
 
 
+MayBeAt = Callable[[float, float], bool]
+"""Whether the robot may be at a point of the map at all, x and y in metres."""
+
+
 @dataclass(frozen=True, slots=True)
 class Found:
     """A place for the newest pose, and what speaks for it."""
@@ -77,8 +82,10 @@ class Recovery:
         field: DistanceField,
         max_range_m: float,
         parameters: EnmlParameters,
+        may_be_at: MayBeAt | None = None,
     ) -> None:
         self._segments = segments
+        self._may_be_at = may_be_at
         self._everywhere = region
         self._search = GlobalSearch(field)
         self._field = field
@@ -175,7 +182,7 @@ class Recovery:
             polish(self._visible, few, place, self._parameters) for place in [*self._open, *places]
         ]
         claims = [] if expected is None else [expected]
-        found = self._found([*claims, *polished], looks)
+        found = self._found([*claims, *self._possible(polished)], looks)
         self._open = np.array([each.pose for each in _in_the_running(found)]).reshape(-1, 3)
         return found
 
@@ -192,7 +199,14 @@ class Recovery:
             )
             for ahead_m, left_m in product(_AROUND_M, _AROUND_M)
         ]
-        return max([found, *self._found(around, looks)], key=lambda each: each.score)
+        possible = self._possible(around)
+        return max([found, *self._found(possible, looks)], key=lambda each: each.score)
+
+    def _possible(self, places: list[Poses]) -> list[Poses]:
+        may_be_at = self._may_be_at
+        if may_be_at is None:
+            return places
+        return [each for each in places if may_be_at(float(each[0]), float(each[1]))]
 
     def _found(self, places: list[Poses], looks: list[ScanLook]) -> list[Found]:
         return [Found(place, weigh(self._visible, self._field, looks, place)) for place in places]

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
-from math import inf
+from math import hypot, inf
 from typing import Annotated
 
 import numpy as np
@@ -90,6 +90,13 @@ class Floor(StrictModel):
     def wall_segments(self) -> NDArray[np.float64]:
         """Its walls as rows (n, 4), without its doors."""
         return np.array(self.walls, np.float64).reshape(-1, 4)
+
+    def has_way_from(self, x: float, y: float) -> bool:
+        """Whether no wall is between a point and one of its places: else no robot gets there."""
+        places = sorted(self.places.values(), key=lambda at: hypot(at.x - x, at.y - y))
+        return any(
+            not len(crossed_by(np.array([x, y, at.x, at.y]), self.wall_segments)) for at in places
+        )
 
     @cached_property
     def vector_map(self) -> VectorMap:

@@ -17,19 +17,25 @@ class BasketMemory:
 
     `items`: what it was given, with what each weighed when it felt that (kg). `expected_kg`: what
     the load cell showed after that; None before its first look. `offered`: what it has offered, and
-    at which place, since it got there. `handed_over`: where it last handed over what it no
-    longer has.
+    at which place, since it got there; `asked`: what it asks for, and at which place.
+    `handed_over`: where it last handed over what it no longer has.
     """
 
     items: dict[str, float] = field(default_factory=dict)
     expected_kg: float | None = None
     offered: tuple[str, str] | None = None
+    asked: tuple[str, str] | None = None
     handed_over: dict[str, str] = field(default_factory=dict)
+
+    def offers(self, item: str, place: str) -> bool:
+        """Whether it has offered this at this place since it got there."""
+        return self.offered == (item, place)
 
     def note_given(self, item: str, load_kg: float) -> None:
         """Something was put in, and the load cell now shows this."""
         self.items[item] = load_kg - (self.expected_kg or 0.0)
         self.expected_kg = load_kg
+        self.asked = None
         self.handed_over.pop(item, None)
 
     def note_taken(self, item: str, place: str, load_kg: float) -> None:
@@ -134,6 +140,17 @@ class LoadSense:
         if abs(change_kg) <= UNSURE_KG:
             return "nothing"
         return "heavier" if change_kg > 0.0 else "another"
+
+    def as_asked(self) -> FeltLoad | None:
+        """What keeps the basket from holding what was asked for, or else all that was given."""
+        return self.as_remembered() if self._basket.memory.asked is None else self.given()
+
+    def as_offered(self) -> FeltLoad | None:
+        """What keeps the basket from being lighter by what was offered; None where it is."""
+        memory = self._basket.memory
+        if memory.offered is None:
+            return "nothing"
+        return self.taken(memory.items.get(memory.offered[0], 0.0))
 
     def as_remembered(self) -> FeltLoad | None:
         """What keeps the basket from holding all that was given; None where it does."""

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from mend.robots.base.base import Base
 from mend.robots.base.behaviors.execution import BaseExecution
+from mend.robots.base.companion import CAUGHT_UP_M
 from mend.robots.base.way_ahead import WayAhead
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import AnyExecution
@@ -41,11 +42,11 @@ def look_as_told(
     if look.expect == "located":
         return _look_where(base, command, look)
     if look.expect in ("loaded", "unloaded"):
-        return _feel(base, command, look.within_s, held)
+        return _feel(base, command, look, held)
     if look.expect == "charged":
         return _until(base, command, look.within_s, lambda: base.battery.charging)
     if look.expect == "accompanied":
-        return _until(base, command, look.within_s, lambda: _is_accompanied(held))
+        return _until(base, command, look.within_s, lambda: _is_accompanied(base, held))
     if look.expect not in (None, "way_clear"):
         raise CommandError(f"a base that drives cannot look for '{look.expect}'")
 
@@ -65,13 +66,18 @@ def _look_ahead(base: Base, command: str, look: Look, held: AnyExecution | None)
     return answer(base, command, fulfilled=True, led_round=ahead is WayAhead.ROUND)
 
 
-def _feel(base: Base, command: str, within_s: float, held: AnyExecution | None) -> Routine[Looked]:
-    """Whether the basket holds what the step that waits needs, or else what was in it before."""
+def _feel(base: Base, command: str, look: Look, held: AnyExecution | None) -> Routine[Looked]:
+    """Whether the basket holds what the step that waits needs, or else what was in it before.
+
+    Who has begun anew and waits with no step still knows what it had asked for, or offered.
+    """
 
     def felt() -> FeltLoad | None:
-        return held.felt() if isinstance(held, BaseExecution) else base.load.as_remembered()
+        if isinstance(held, BaseExecution):
+            return held.felt()
+        return base.load.as_offered() if look.expect == "unloaded" else base.load.as_asked()
 
-    end_s = base.body.time_s() + within_s
+    end_s = base.body.time_s() + look.within_s
     while (told := felt()) is not None:
         left_s = end_s - base.body.time_s()
         if left_s <= 1e-9:
@@ -99,8 +105,10 @@ def _until(base: Base, command: str, within_s: float, so: Callable[[], bool]) ->
     return answer(base, command, fulfilled=True)
 
 
-def _is_accompanied(held: AnyExecution | None) -> bool:
-    return isinstance(held, BaseExecution) and held.accompanied()
+def _is_accompanied(base: Base, held: AnyExecution | None) -> bool:
+    if isinstance(held, BaseExecution):
+        return held.accompanied()
+    return base.company.is_within(CAUGHT_UP_M)
 
 
 def _look_there(base: Base, command: str, guess: str) -> Routine[Looked]:

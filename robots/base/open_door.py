@@ -9,7 +9,8 @@ Posts = tuple[tuple[float, float], tuple[float, float]]
 Matrix = NDArray[np.float64]
 
 _BEYOND_M = 0.3
-"""A beam that ends so far beyond a door leads through it, also where the map is a little off."""
+"""A beam that ends so far beyond the plane of a door leads through it, also where the map is a
+little off: along the beam that may be much where it meets the door aslant."""
 _SHARE = 0.1
 """Of the beams between its posts so many do; there is a gap beneath and beside any door."""
 
@@ -24,8 +25,9 @@ def sees_through(scan: RangeScan, here: BasePose, posts: Posts) -> bool:
     with np.errstate(all="ignore"):
         reached_m = _cross(away, along) / across
         share = _cross(away, rays) / across
+        beyond_m = (scan.ranges_m - reached_m) * np.abs(across) / np.hypot(*along)
     between = (reached_m > 0.0) & (share > 0.0) & (share < 1.0) & np.isfinite(scan.ranges_m)
-    through = between & (scan.ranges_m > reached_m + _BEYOND_M)
+    through = between & (beyond_m > _BEYOND_M)
     return bool(through.sum() > _SHARE * between.sum())
 
 

@@ -12,6 +12,7 @@ from mend.robots.base.behaviors.behavior import (
     BaseStep,
     Drive,
     RideUntilThere,
+    steps_to,
 )
 from mend.robots.base.behaviors.execution import BaseExecution
 from mend.robots.base.body import BaseBody, BasePose
@@ -125,15 +126,8 @@ class BaseSubsystem:
         """What a start command asks for, not begun. Raises `CommandError`."""
         behavior = self._behaviors[start.behavior]()
         parameters = read_parameters(type(behavior), start)
-        situation = BaseSituation(
-            here=self.effector.body.pose(),
-            places=self._places,
-            target=self._target(getattr(parameters, "place", None), start.target),
-            ways=self.effector.ways,
-            basket=self.effector.basket,
-            closed=self.effector.closed.at(self.effector.body.time_s()),
-            companion=self.effector.companion,
-        )
+        target = self._target(getattr(parameters, "place", None), start.target)
+        situation = self._situation(target)
         steps = behavior.steps(parameters, situation)
         if not self.effector.whereabouts.is_lost:
             self._check_ways(situation.here, steps)
@@ -151,10 +145,26 @@ class BaseSubsystem:
         command: str,
         look: Look,
         held: AnyExecution | None,
-        report: Callable[[ReportBody], None],  # noqa: ARG002
+        report: Callable[[ReportBody], None],
     ) -> Routine[Looked]:
         """The routine of a look. Raises `CommandError`."""
+        if held is None and look.expect == "way_clear" and look.place in self._places:
+            held = self._way_laid_out(command, look.place, report)
         return look_as_told(self.effector, command, look, held)
+
+    def _way_laid_out(
+        self, command: str, place: str, report: Callable[[ReportBody], None]
+    ) -> BaseExecution:
+        """What is before one that has begun anew, and has lost what it was doing."""
+        there = self._places[place]
+        try:
+            steps = steps_to(place, self._situation(there))
+        except CommandError:
+            # Whether a way comes to lead there it sees as it looks.
+            steps = [Drive(f"go to {place}", there)]
+        execution = BaseExecution(command, "", steps, self.effector, [], report)
+        execution.pass_by()
+        return execution
 
     def glance(self, command: str, held: AnyExecution | None) -> Looked:  # noqa: ARG002
         """Where it is now."""
@@ -193,6 +203,17 @@ class BaseSubsystem:
 
     def note(self, looked: Looked) -> None:
         """What others located does not concern it."""
+
+    def _situation(self, target: BasePose | None) -> BaseSituation:
+        return BaseSituation(
+            here=self.effector.body.pose(),
+            places=self._places,
+            target=target,
+            ways=self.effector.ways,
+            basket=self.effector.basket,
+            closed=self.effector.closed.at(self.effector.body.time_s()),
+            companion=self.effector.companion,
+        )
 
     def _check_ways(self, here: BasePose, steps: Sequence[BaseStep]) -> None:
         """Raises `CommandError` where there is no way from one goal to the next."""

@@ -10,7 +10,15 @@ from mend.errors import ConflictError, RefusalError, UnavailableError
 from mend.fleet.dispatch.leg import Leg, LegEnd, LegOutcome
 from mend.fleet.requests import GoToRoom, LegAction
 from mend.robots.base.behaviors.behavior import MEETS_M
-from mend.server.fleets.leg_task import LegStage, run_of, run_request, task_of, way_of
+from mend.server.fleets.leg_task import (
+    BEHAVIORS,
+    HAND_OVER,
+    LegStage,
+    run_of,
+    run_request,
+    task_of,
+    way_of,
+)
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.runs import Runs
 from mend.server.runtime.requests import RunRequest
@@ -153,7 +161,7 @@ class LegExecution:
         # A leaf that somebody had left out counts as done for the run, but nobody has done it.
         left_out = run.result is None or bool(run.result.missing)
         if run.status is RunStatus.FINISHED and not left_out:
-            return LegEnd(outcome=LegOutcome.DONE)
+            return LegEnd(outcome=LegOutcome.DONE, reason=self._felt())
         if self._broken_off:
             return LegEnd(outcome=LegOutcome.WITHDRAWN, at=self._at())
         said = run.result.reason if run.result is not None else str(run.status)
@@ -161,6 +169,13 @@ class LegExecution:
 
     def _failed(self, reason: str) -> LegEnd:
         return LegEnd(outcome=LegOutcome.FAILED, reason=reason, at=self._at())
+
+    def _felt(self) -> str | None:
+        """What is known of a thing that was brought: a load cell does not tell who took it."""
+        leg = self._leg
+        if BEHAVIORS.get(leg.action) != HAND_OVER:
+            return None
+        return f"it was taken out of the basket of {leg.robot} at {leg.place}"
 
     def _at(self) -> str | None:
         """The place that the robot is nearest to, as far as it has said where it is."""

@@ -30,15 +30,16 @@ from mend.tasks.scenario import Person
 
 GO_TO = "go_to"
 CHARGE = "charge"
+HAND_OVER = "hand_over_item"
 BEHAVIORS = {
     LegAction.DELIVER_MESSAGE: "deliver_message",
     LegAction.MEET: "meet_person",
     LegAction.ESCORT: "escort",
     LegAction.COLLECT: "collect_item",
     LegAction.TAKE: "collect_item",
-    LegAction.HAND_OVER: "hand_over_item",
-    LegAction.GIVE: "hand_over_item",
-    LegAction.BRING_BACK: "hand_over_item",
+    LegAction.HAND_OVER: HAND_OVER,
+    LegAction.GIVE: HAND_OVER,
+    LegAction.BRING_BACK: HAND_OVER,
 }
 """What robots do at the end of a leg, where there is more to it than being there."""
 _ARTICLE = re.compile(r"^(the|a|an)\s+", re.IGNORECASE)

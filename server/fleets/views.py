@@ -29,7 +29,10 @@ class ExpectedView(View):
 
 
 class RequestView(View):
-    """How far a request has come. `what`: as it was asked; `reason`: why it is not as asked."""
+    """How far a request has come. `what`: as it was asked; `reason`: why it is not as asked.
+
+    Of what is done it says what is known of that, where its robot could not feel all of it.
+    """
 
     name: str
     site: UUID

@@ -36,7 +36,7 @@ class FloorMap:
 
     def localizer(self) -> SearchingLocalizer:
         """One that follows a robot by the walls: doors stand open, or are shut."""
-        return EnmlLocalizer(self._walls)
+        return EnmlLocalizer(self._walls, may_be_at=self._floor.has_way_from)
 
     @cached_property
     def _walls(self) -> VectorMap:

@@ -28,7 +28,8 @@ class ItemSnapshot(StrictModel):
 class Item:
     """A thing: with a person at a `place`, or in the basket of a `robot`, by its number.
 
-    `taken`: somebody has taken it out of that basket on the way, and has it. `delivered`: a robot
+    `taken`: somebody has taken it out of that basket on the way, and has it; out of none that
+    misses it, where it was handed over just then: they keep it. `delivered`: a robot
     has brought it to its place.
     """
 
@@ -170,11 +171,14 @@ class Goods:
         return ""
 
     def steal(self, name: str | None) -> str:
-        """Somebody takes a thing out of a basket on its way; returns why they cannot."""
+        """Somebody takes a thing out of a basket whom it is not for; returns why they cannot."""
         item = self.items.get(name or "")
         if item is None or item.robot is None or item.taken:
             return f"'{name}' is in no robot's basket"
         item.taken = True
+        wish = self.wishes.get(item.robot)
+        if wish is not None and wish.hands_over and wish.item == name:
+            item.robot = None
         return ""
 
     def _put_back(self, stands_at: Callable[[int, str | None], bool]) -> list[str]:

@@ -20,6 +20,8 @@ class BasketSnapshot(StrictModel):
     expected_kg: float | None
     offered: tuple[str, str] | None
     handed_over: dict[str, str]
+    # Older ones do not say.
+    asked: tuple[str, str] | None = None
 
 
 class RobotBasket:
@@ -58,6 +60,7 @@ class RobotBasket:
             expected_kg=memory.expected_kg,
             offered=memory.offered,
             handed_over=dict(memory.handed_over),
+            asked=memory.asked,
         )
 
     def restore(self, kept: BasketSnapshot) -> None:
@@ -67,3 +70,4 @@ class RobotBasket:
         memory = self.memory
         memory.items, memory.expected_kg = dict(kept.items), kept.expected_kg
         memory.offered, memory.handed_over = kept.offered, dict(kept.handed_over)
+        memory.asked = kept.asked

@@ -16,8 +16,8 @@ def written(folder: Path, lines: Iterable[dict[str, Any]]) -> Path:
     return file
 
 
-WITH_ANN: dict[str, Any] = {"tea": ["F1-101", None, False, False]}
-IN_BASKET: dict[str, Any] = {"tea": [None, 0, False, False]}
+WITH_ANN: dict[str, Any] = {"tea": ["F1-101", None, False, False, 0.5]}
+IN_BASKET: dict[str, Any] = {"tea": [None, 0, False, False, 0.5]}
 
 
 def test_what_a_kill_undoes_was_not_so(tmp_path: Path) -> None:
@@ -48,3 +48,45 @@ def test_a_kill_that_moves_or_loses_a_thing_is_noticed(
     ]
     (fault,) = Truth(written(tmp_path, lines)).faults
     assert "a kill changed where things are" in fault
+
+
+def basket(**lost: str) -> dict[str, Any]:
+    """Tea and jam, which weigh about the same, a sofa, and where those are that were lost."""
+    weighs = {"tea": 0.5, "jam": 0.58, "sofa": 1.9}
+    return {
+        name: [lost.get(name), None if name in lost else 0, False, False, kg]
+        for name, kg in weighs.items()
+    }
+
+
+@pytest.mark.parametrize(
+    ("went", "told"),
+    [
+        ({"what": "stolen", "item": "tea", "robot": 0, "offers": "tea"}, [6.0]),
+        ({"what": "stolen", "item": "jam", "robot": 0, "offers": "tea"}, [6.0]),
+        ({"what": "stolen", "item": "sofa", "robot": 0, "offers": "tea"}, []),
+        ({"what": "stolen", "item": "tea", "robot": 0, "offers": None}, []),
+        ({"what": "stolen", "item": "tea", "robot": 0, "offers": "sofa"}, []),
+        ({"what": "items", "items": basket(jam="F1-101")}, [6.0]),
+        ({"what": "items", "items": basket(sofa="F1-101")}, []),
+    ],
+)
+def test_no_robot_feels_who_takes_what_it_offers_or_what_weighs_as_much(
+    tmp_path: Path, went: dict[str, Any], told: list[float]
+) -> None:
+    begun = {"t": 0.0, "what": "begun", "items": basket()}
+    truth = Truth(written(tmp_path, [begun, {"t": 6.0, **went}]))
+    assert list(truth.felt_alike_s("tea")) == told
+
+
+def test_what_was_in_a_basket_in_a_span_and_just_before(tmp_path: Path) -> None:
+    lines = [
+        {"t": 0.0, "wall_s": 100.0, "what": "begun", "items": IN_BASKET},
+        {"t": 5.0, "wall_s": 101.0, "what": "items", "items": WITH_ANN},
+        {"t": 6.0, "wall_s": 102.0, "what": "items", "items": IN_BASKET},
+    ]
+    truth = Truth(written(tmp_path, lines))
+    held, empty = frozenset({"tea"}), frozenset[str]()
+    assert list(truth.baskets_between(100.5, 101.5, 0)) == [held, empty]
+    assert list(truth.baskets_between(100.5, 101.5, 1)) == [empty, empty]
+    assert list(truth.baskets_between(100.2, 100.8, 0)) == [held]

@@ -13,7 +13,7 @@ from mend.localization.enml.looks import glance, looks_of, weigh
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.polishing import polish
 from mend.localization.enml.prior import whitening_of
-from mend.localization.enml.recovery import Recovery
+from mend.localization.enml.recovery import MayBeAt, Recovery
 from mend.localization.enml.visible import Visible
 from mend.localization.points import scan_points
 from mend.localization.pose import Poses, relative, transform, wrap_angle
@@ -39,7 +39,7 @@ def field_of(vector_map: VectorMap) -> DistanceField:
     return distance_field(vector_map, 0.1, 1.0)
 
 
-def recovery_on(vector_map: VectorMap) -> Recovery:
+def recovery_on(vector_map: VectorMap, may_be_at: MayBeAt | None = None) -> Recovery:
     x_min, y_min, x_max, y_max = vector_map.bounds
     return Recovery(
         vector_map.segments,
@@ -47,6 +47,7 @@ def recovery_on(vector_map: VectorMap) -> Recovery:
         field_of(vector_map),
         REACH_M,
         EnmlParameters(),
+        may_be_at,
     )
 
 
@@ -160,6 +161,16 @@ def test_between_places_that_are_all_the_same_none_is_chosen() -> None:
     episode = seen_along(WAY, TWINS, np.array([20.0, 3.0, 0.0]))
     for path_m in (0.0, 2.0, 100.0):
         assert recovery_on(TWINS).search(episode, None, path_m) is None
+
+
+def test_no_robot_is_found_where_none_can_be() -> None:
+    episode = seen_along(WAY, TWINS, np.array([20.0, 3.0, 0.0]))
+    recovery = recovery_on(TWINS, lambda x, _: x < 20.0)
+    found = recovery.search(episode, None, 0.0)
+    assert found is not None
+    assert off_m(found.pose, WAY[-1]) < 0.02
+    assert all(each.pose[0] < 20.0 for each in recovery.open_places(episode))
+    assert recovery_on(TWINS, lambda *_: False).search(episode, None, 0.0) is None
 
 
 def test_where_it_is_expected_a_robot_is_found_although_another_place_is_the_same() -> None:

@@ -1,6 +1,7 @@
 """The execution of one behavior of a base: its steps, one after the other."""
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 from mend.robots.base.base import Base
 from mend.robots.base.battery import ENOUGH, LOW
@@ -60,6 +61,13 @@ class BaseExecution(Execution[BaseProgress]):
         self._done = 0
         self._asked_whether_heard = False
 
+    def pass_by(self) -> None:
+        """Take what it is to drive for done where it stands there already."""
+        for step in self._progress.steps[self._done :]:
+            if not (isinstance(step, Drive) and self._driving.is_about_at(step)):
+                return
+            self._done += 1
+
     def way_ahead(self) -> WayAhead:
         """Whether the step under way, or else the next, could be taken, as far as is seen."""
         left = self._progress.steps[self._done :]
@@ -82,11 +90,15 @@ class BaseExecution(Execution[BaseProgress]):
     def felt(self) -> FeltLoad | None:
         """What the basket feels that is not what the step under way, or else the next, needs."""
         left, load = self._progress.steps[self._done :], self._base.load
+        memory = self._base.basket.memory
+        if self._progress.taken is None:
+            # It has not asked for anything yet, or anew.
+            return load.as_remembered()
         match left[0] if left else None:
             case AwaitItem():
                 return load.given()
-            case AwaitTaken(item=item):
-                return load.taken(self._base.basket.memory.items.get(item, 0.0))
+            case AwaitTaken(item=item, place=place) if memory.offers(item, place):
+                return load.taken(memory.items.get(item, 0.0))
             case _:
                 return load.as_remembered()
 
@@ -125,7 +137,8 @@ class BaseExecution(Execution[BaseProgress]):
         progress.step, progress.blocked_since_s = BEFORE_FIRST_STEP, None
         progress.wait = progress.standing = progress.alone_since_s = None
         self._base.company.start_anew()
-        self._forget_other_offers()
+        self._forget_offers_elsewhere()
+        self._base.basket.memory.asked = None
         self._invite()
         self._watch.check()
         yield from self._find_out()
@@ -133,6 +146,7 @@ class BaseExecution(Execution[BaseProgress]):
         if self._done == 0 and self._is_there():
             return True
         if self._is_elsewhere():
+            self._forget_offers_elsewhere()
             self._done -= 1
         progress.move_to(ExecutionState.RUNNING)
         while self._done < len(progress.steps):
@@ -163,15 +177,19 @@ class BaseExecution(Execution[BaseProgress]):
                 case Arrive(person=person):
                     self._base.companion.lead(person)
 
-    def _forget_other_offers(self) -> None:
-        """What was offered where it stood is offered no more by who sets about something else."""
-        memory = self._base.basket.memory
-        if memory.offered is not None and memory.offered not in self._hands_over():
-            memory.offered = None
+    def _forget_offers_elsewhere(self) -> None:
+        """What was offered where it stood is offered no more by who is to go from there.
 
-    def _hands_over(self) -> list[tuple[str, str]]:
-        steps = (each for each in self._progress.steps if isinstance(each, AwaitTaken))
-        return [(each.item, each.place) for each in steps]
+        Who takes it on the way is no one to whom it was handed over.
+        """
+        memory = self._base.basket.memory
+        stays = any(
+            isinstance(step, AwaitTaken) and memory.offers(step.item, step.place)
+            and isinstance(before, Drive) and self._driving.is_about_at(before)
+            for before, step in pairwise(self._progress.steps)
+        )  # fmt: skip
+        if not stays:
+            memory.offered = None
 
     def _find_out(self) -> Routine[None]:
         """Stand while it does not know where it is: it cannot say that it is there."""

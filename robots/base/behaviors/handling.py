@@ -26,6 +26,7 @@ class Handling:
     def receive(self, step: AwaitItem) -> Routine[None]:
         """Wait until something is put into the basket. Raises `Interruption`."""
         base = self._base
+        base.basket.memory.asked = (step.item, step.place)
         base.basket.ask_for(step.item, step.place)
         yield from self._await(step, until=lambda: base.load.given() is None)
         base.basket.withdraw()
@@ -34,6 +35,9 @@ class Handling:
     def hand_over(self, step: AwaitTaken) -> Routine[None]:
         """Wait until the item is taken out of the basket. Raises `Interruption`."""
         base, memory = self._base, self._base.basket.memory
+        if not memory.offers(step.item, step.place):
+            # What is gone by now was taken before anybody was offered it.
+            self._watch.check()
         memory.offered = (step.item, step.place)
         base.basket.offer(step.item, step.place)
         weight_kg = memory.items[step.item]

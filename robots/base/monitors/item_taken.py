@@ -1,4 +1,4 @@
-"""`item_taken`: something was taken out of the basket of a base on its way."""
+"""`item_taken`: something was taken out of the basket of a base before it was offered."""
 
 from typing import ClassVar
 
@@ -11,11 +11,13 @@ from mend.robots.link.messages import BASKET, Detection
 
 
 class ItemTaken(BaseMonitor[NoParameters]):
-    """Raises `item_taken` for a basket that is lighter than it was, on its way."""
+    """Raises `item_taken` for a basket that is lighter than it was, until anything is offered."""
 
     issue: ClassVar[str] = "item_taken"
     behaviors: ClassVar[frozenset[str]] = ANY_BEHAVIOR
-    phases: ClassVar[frozenset[Phase]] = frozenset({Phase.PREPARE, Phase.TRAVEL, Phase.RIDE})
+    phases: ClassVar[frozenset[Phase]] = frozenset(
+        {Phase.PREPARE, Phase.TRAVEL, Phase.RIDE, Phase.UNLOAD}
+    )
     reaction: ClassVar[Reaction] = Reaction.STOP_IN_PLACE
     parameters: ClassVar[type[StrictModel]] = NoParameters
 

@@ -90,7 +90,9 @@ class LegBegun(LegEvent):
 
 
 class LegEnded(LegEvent):
-    """What became of a leg, why where it was not done, and where its robot is then.
+    """What became of a leg, and where its robot is then; `reason`: why, where it was not done.
+
+    Of what was done it says what is known of that, where its robot could not feel all of it.
 
     `driven_m`: how far its robot has driven meanwhile, by its wheels, and `barred_s` how long it
     stood on its way before what barred it; None where that is not known, and in the journals of an

@@ -141,6 +141,29 @@ def test_transport_is_collected_and_handed_over() -> None:
     assert dispatcher.legs_to_begin(50.0) == []
 
 
+TAKEN_OUT = "it was taken out of the basket of r0"
+
+
+@pytest.mark.parametrize("bring", [DONE, LegEnd(outcome=LegOutcome.DONE, reason=TAKEN_OUT)])
+def test_of_what_was_brought_is_told_what_is_known(bring: LegEnd) -> None:
+    dispatcher = dispatcher_for("a")
+    dispatcher.submit(asked(), 0.0)
+    make_leg(dispatcher, 0.0, 15.0, LegEnd(outcome=LegOutcome.DONE, reason="it is heavier"))
+    assert dispatcher.view("tea").reason is None
+    make_leg(dispatcher, 15.0, 25.0, bring)
+    assert dispatcher.view("tea").reason == bring.reason
+
+
+def test_what_went_back_has_its_reason_and_what_is_known() -> None:
+    dispatcher = dispatcher_for("a", policy=Policy(max_attempts=1))
+    dispatcher.submit(asked(), 0.0)
+    make_leg(dispatcher, 0.0, 15.0)
+    make_leg(dispatcher, 15.0, 25.0, NOBODY)
+    make_leg(dispatcher, 40.0, 25.0, LegEnd(outcome=LegOutcome.DONE, reason=TAKEN_OUT))
+    reason = dispatcher.view("tea").reason
+    assert reason == f"r0 could not hand_over 'tea' at f/d: nobody came; {TAKEN_OUT}"
+
+
 def test_visit_is_one_leg() -> None:
     dispatcher = dispatcher_for("a")
     dispatcher.submit(visit(), 0.0)
@@ -305,7 +328,7 @@ def test_what_nobody_takes_back_stays_aboard_until_a_person_takes_it() -> None:
     view = dispatcher.view("tea")
     assert view.status is RequestStatus.FAILED
     assert view.reason is not None
-    assert view.reason.endswith("it is aboard r0, for a person to take it")
+    assert view.reason.endswith("it was last aboard r0, for a person to take it")
     assert not dispatcher.submit(asked("more"), 70.0).booked
     dispatcher.fetched("tea", 80.0)
     assert dispatcher.submit(asked("more"), 80.0).booked

@@ -105,3 +105,13 @@ def test_walls_across_a_lane_are_told_and_those_beside_it_are_not() -> None:
 
 def test_a_floors_map_has_its_doors_shut() -> None:
     assert len(floor(walls=((0.0, 1.0, 5.0, 1.0),), doors={"front": DOOR}).vector_map) == 2
+
+
+def test_from_behind_all_walls_no_way_leads_anywhere() -> None:
+    walls = ((-2.0, -2.0, 12.0, -2.0), (12.0, -2.0, 12.0, 2.0), (12.0, 2.0, -2.0, 2.0))
+    around = floor(walls=(*walls, (-2.0, 2.0, -2.0, -2.0), (5.0, -2.0, 5.0, 1.0)))
+    assert around.has_way_from(0.0, 1.9)
+    assert around.has_way_from(11.9, -1.9)
+    assert not around.has_way_from(12.3, 0.0)
+    assert not around.has_way_from(0.0, -2.1)
+    assert not floor(places={}, lanes=()).has_way_from(0.0, 0.0)

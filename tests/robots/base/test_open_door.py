@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from mend.maps.ray_cast import cast
@@ -31,6 +31,7 @@ def robot(x: float, y: float, radius_m: float = 0.25) -> list[tuple[float, ...]]
     return [(*a, *b) for a, b in itertools.pairwise(ring)]
 
 
+@example(1.0, 0.375, 0.0, 0.0, 0.09375)
 @given(
     st.floats(-1.0, 1.0), st.floats(0.35, 3.0), st.floats(-3.1, 3.1),
     st.floats(-0.1, 0.1), st.floats(-0.1, 0.1),

@@ -244,6 +244,18 @@ async def test_what_is_asked_for_is_fetched_and_handed_over_by_one_robot() -> No
         assert len(work.runs.runs) == 2
 
 
+async def test_of_what_was_brought_nobody_says_who_has_it() -> None:
+    async with working("a") as work:
+        await work.fleet.submit(asked(), None)
+        (await work.runs.nth(1)).ended.set_result(("finished", True))
+        (await work.runs.nth(2)).ended.set_result(("finished", True))
+        await work.until("tea", RequestStatus.DONE)
+        taken_out = "it was taken out of the basket of r0 at f/d"
+        assert work.fleet.dispatcher.view("tea").reason == taken_out
+        told = [e for e in await work.journal.read(0, 1000) if isinstance(e, ev.LegEnded)]
+        assert [each.reason for each in told] == [None, taken_out]
+
+
 async def test_a_leg_is_in_the_journal_before_its_robot_hears_of_it() -> None:
     async with working("a") as work:
         await work.fleet.submit(asked(), None)

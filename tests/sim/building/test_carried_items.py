@@ -12,6 +12,7 @@ from mend.robots.link.messages import (
     Look,
     Looked,
     Rejected,
+    ReportBody,
     Resume,
     StepStarted,
 )
@@ -141,6 +142,51 @@ def test_what_was_taken_on_the_way_is_not_taken_for_handed_over() -> None:
     assert (issue.issue, issue.step) == ("item_taken", 0)
 
 
+def test_what_is_taken_just_before_it_is_offered_is_not_taken_for_handed_over() -> None:
+    bench = with_mail(BuildingBench())
+    (agent,), asked = bench.group.agents, len(bench.of(IssueDetected))
+
+    def hear(body: ReportBody, *_: object) -> None:
+        bench.reports.append((ROBOT, body))
+        once = not bench.of(IssueDetected)[asked:]
+        if once and isinstance(body, StepStarted) and body.name == "hand over mail":
+            bench.world.intervene(Intervention(act=Act.STEAL, object="mail"))
+
+    agent.attach(hear, lambda _: None)
+    issue = asks(bench, THERE, "hand_over_item", item="mail")
+    assert issue.issue == "item_taken"
+    assert feels(bench, "loaded").felt == "lighter"
+    assert bench.world.intervene(PUT_IN) == ""
+    assert feels(bench, "loaded").fulfilled
+    bench.send(ROBOT, Resume(execution=issue.execution))
+    assert bench.run_until(IssueDetected).issue == "item_not_taken"
+    assert len(bench.of(Finished)) == 1
+
+
+def test_what_is_taken_on_the_way_back_to_where_it_was_offered_is_not_handed_over() -> None:
+    bench = with_mail(BuildingBench())
+    robot = bench.world.robots[0]
+    elsewhere = robot.at
+    issue = asks(bench, THERE, "hand_over_item", item="mail")
+    robot.stand(elsewhere)
+    bench.send(ROBOT, Resume(execution=issue.execution))
+    bench.group.advance(1.0)
+    assert robot.moving
+    assert bench.world.intervene(Intervention(act=Act.STEAL, object="mail")) == ""
+    assert bench.run_until(IssueDetected).issue == "item_taken"
+
+
+def test_what_was_offered_in_vain_and_is_taken_there_later_was_handed_over() -> None:
+    bench = with_mail(BuildingBench())
+    asks(bench, THERE, "hand_over_item", item="mail")
+    assert bench.world.intervene(TAKE_OUT) == ""
+    bench.send(ROBOT, Interrupt(retreat=True))
+    bench.run()
+    bench.go(ROBOT, THERE, "hand_over_item", item="mail")
+    bench.run()
+    assert len(bench.of(Finished)) == 2
+
+
 def test_who_was_given_nothing_says_so_before_it_sets_out() -> None:
     bench = BuildingBench()
     issue = asks(bench, THERE, "hand_over_item", item="mail")
@@ -218,6 +264,49 @@ def test_a_building_is_rebuilt_with_everything_in_its_basket() -> None:
     again = BUILDINGS.create_agents(setup)
     assert again.snapshot() == snapshot
     assert again.world.goods.items["mail"].robot == 0  # type: ignore[attr-defined]
+
+
+def begun_anew(bench: BuildingBench) -> BuildingBench:
+    """The same world in another life: its robots have lost what they were doing."""
+    return BuildingBench(bench.scene, snapshot=json.loads(json.dumps(bench.group.snapshot())))
+
+
+def test_who_has_begun_anew_feels_no_more_than_there_is_in_its_basket() -> None:
+    bench = BuildingBench()
+    asks(bench, HERE, "collect_item", item="mail")
+    again = begun_anew(bench)
+    assert feels(again, "loaded").felt == "nothing"
+    assert again.world.intervene(PUT_IN) == ""
+    assert feels(again, "loaded").fulfilled
+    again.go(ROBOT, HERE, "collect_item", item="mail")
+    again.run()
+    assert len(again.of(Finished)) == 1
+
+
+def test_who_has_begun_anew_feels_no_less_than_there_is_in_its_basket() -> None:
+    bench = with_mail(BuildingBench())
+    asks(bench, THERE, "hand_over_item", item="mail")
+    again = begun_anew(bench)
+    assert feels(again, "unloaded").felt == "nothing"
+    assert again.world.intervene(TAKE_OUT) == ""
+    assert feels(again, "unloaded").fulfilled
+    again.go(ROBOT, THERE, "hand_over_item", item="mail")
+    again.run()
+    assert len(again.of(Finished)) == 1
+
+
+def test_what_was_taken_while_something_else_was_asked_for_comes_back() -> None:
+    bench = with_mail(BuildingBench())
+    issue = asks(bench, HERE, "collect_item", item="keys")
+    assert bench.world.intervene(Intervention(act=Act.STEAL, object="mail")) == ""
+    bench.send(ROBOT, Resume(execution=issue.execution))
+    assert bench.run_until(IssueDetected).issue == "item_taken"
+    bench.run()
+    assert feels(bench, "loaded").felt == "lighter"
+    assert bench.world.intervene(PUT_IN) == ""
+    assert feels(bench, "loaded").fulfilled
+    bench.send(ROBOT, Resume(execution=issue.execution))
+    assert bench.run_until(IssueDetected).issue == "item_not_given"
 
 
 def test_a_robot_misses_what_was_taken_out_for_nobody() -> None:

@@ -86,8 +86,10 @@ def test_nothing_is_lost_or_doubled_by_whatever_people_do(seed: int) -> None:
         assert weights.items() <= {n: each.weight_kg for n, each in made.items.items()}.items()
         weights = {name: each.weight_kg for name, each in made.items.items()}
         for each in made.items.values():
-            assert (each.place is None) != (each.robot is None), "it is in one place"
-            assert not each.taken or each.robot is not None
+            kept_by_thief = each.taken and each.robot is None
+            where = [each.place is not None, each.robot is not None, kept_by_thief]
+            assert where.count(True) == 1, "it is in one place"
+            assert not each.taken or each.place is None
         for robot in range(ROBOTS):
             inside = [e for e in made.items.values() if e.robot == robot and not e.taken]
             assert made.load_kg(robot) == pytest.approx(sum(e.weight_kg for e in inside))
@@ -140,6 +142,20 @@ def test_what_was_taken_on_the_way_comes_back() -> None:
     assert made.steal("mail") == "'mail' is in no robot's basket"
     assert made.put_in(None, anywhere, far_off) == ""
     assert made.load_kg(0) == made.items["mail"].weight_kg
+
+
+def test_who_takes_what_is_handed_over_to_somebody_else_keeps_it() -> None:
+    made = goods()
+    wish(made, "mail", "a")
+    made.put_in("mail", anywhere, far_off)
+    wish(made, "mail", "b", hands_over=True)
+    assert made.steal("mail") == ""
+    made.wishes.clear()
+    wish(made, "keys", "a")
+    assert made.put_in(None, anywhere, far_off) == ""
+    mail = made.items["mail"]
+    assert (mail.place, mail.robot, mail.taken, mail.delivered) == (None, None, True, False)
+    assert made.load_kg(0) == made.items["keys"].weight_kg
 
 
 def test_who_forgets_does_nothing_or_puts_in_something_else_and_takes_that_out_again() -> None:

@@ -70,7 +70,7 @@ def test_it_tells_what_it_waits_for_or_misses(
         (ItemNotTaken, {Phase.UNLOAD}),
         (NobodyAnswers, {Phase.TELL}),
         (ItemMissing, {Phase.PREPARE}),
-        (ItemTaken, {Phase.PREPARE, Phase.TRAVEL, Phase.RIDE}),
+        (ItemTaken, {Phase.PREPARE, Phase.TRAVEL, Phase.RIDE, Phase.UNLOAD}),
     ],
 )
 def test_each_watches_where_it_matters(monitor: type[BaseMonitor], phases: set[Phase]) -> None:
