@@ -194,7 +194,7 @@ class Dispatcher:
         self._state.settle()
 
     def robot_moved(self, robot: str, at: str, now_s: float) -> None:
-        """A robot that had nothing to do stands at another place now.
+        """A robot that had nothing to do, or works no more, stands at another place now.
 
         Raises `ConflictError` where it has something to do, `NotFoundError`.
         """

@@ -21,6 +21,7 @@ from mend.server.fleets.alarms import Alarms
 from mend.server.fleets.charging import Charging
 from mend.server.fleets.closed_ways import ClosedWays
 from mend.server.fleets.errands import Errands
+from mend.server.fleets.failed_robots import FailedRobots
 from mend.server.fleets.fleet_book import FleetBook
 from mend.server.fleets.fleet_news import FleetNews
 from mend.server.fleets.fleet_record import Errand, FleetRecord
@@ -102,6 +103,7 @@ class FleetAtWork:
             kept,
         )
         self.operators = Operators(self._book, self._errands, self._execution_of, self._send)
+        self._failed_robots = FailedRobots(dispatcher, site.whereabouts, self._book.met_at)
         self._found_ways = FoundWays(dispatcher, self._book.closed_ways)
         self._charging = Charging(dispatcher, site.battery, places.names)
         meetings = Meetings(dispatcher.building, site.frames, places.names, self._occupation)
@@ -193,6 +195,8 @@ class FleetAtWork:
                 and self._site.rests(robot)
             ):
                 self.dispatcher.robot_back(robot, self._book.at(robot), now_s)
+        for robot, at in self._failed_robots.moved():
+            self.dispatcher.robot_moved(robot, at, now_s)
         unwanted = self.dispatcher.legs_to_withdraw(now_s)
         while due := [e for e in self.dispatcher.legs_to_begin(now_s) if self._is_free(e.robot)]:
             start = self._book.at(due[0].robot)

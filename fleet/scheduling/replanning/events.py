@@ -53,7 +53,7 @@ class RobotBack:
 
 @dataclass(frozen=True, slots=True)
 class RobotMoved:
-    """A robot that had nothing to do is at another place than the plan knows of."""
+    """A robot that had nothing to do, or works no more, is elsewhere than the plan knows of."""
 
     robot: str
     place: str

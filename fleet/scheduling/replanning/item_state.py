@@ -107,6 +107,11 @@ class TrackedItem:
         self.leave(place, since_s)
         self.held_by = held_by
 
+    def stand_elsewhere(self, place: int) -> None:
+        """The robot that it stands with is at another place now."""
+        assert self.held_by is not None, "it stands with a robot"
+        self.place = place
+
     def go_on_with(self) -> None:
         """The robot that it stands with works again, and has it. Raises `ItemStateError`."""
         robot, self.held_by = self.held_by, None

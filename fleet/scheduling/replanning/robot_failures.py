@@ -48,6 +48,16 @@ def fail(state: FleetState, event: RobotFailed) -> list[int]:
     return sorted(moved)
 
 
+def be_elsewhere(state: FleetState, number: int, place: int) -> list[int]:
+    """One that works no more stands at another place now: who fetches what it has goes there."""
+    state.robots[number].stand_at(place, state.now_s)
+    held = [n for n, item in enumerate(state.items) if item.held_by == number]
+    for n in held:
+        state.take_out(n)
+        state.items[n].stand_elsewhere(place)
+    return [n for n in held if state.items[n].open]
+
+
 def come_back(state: FleetState, event: RobotBack) -> list[int]:
     """A robot works again, with what is still in its basket: whoever was to fetch that does not.
 

@@ -404,7 +404,10 @@ class RunningFleet:
 
     def _move(self, number: int, place: str) -> Outcome:
         state, robot = self._state, self._state.robots[number]
-        if not robot.works or robot.doing is not None or robot.trip is not None:
+        if not robot.works:
+            found = robot_failures.be_elsewhere(state, number, state.place_number(place))
+            return self._replan(found)
+        if robot.doing is not None or robot.trip is not None:
             raise EventError(f"robot '{robot.robot.name}' does not stand there with nothing to do")
         robot.stand_at(state.place_number(place), max(state.now_s, robot.free_s))
         return self._replan([])

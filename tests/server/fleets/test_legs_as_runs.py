@@ -473,6 +473,17 @@ async def test_a_robot_that_is_put_back_brings_what_nobody_has_fetched() -> None
         assert len(work.runs.runs) == 4
 
 
+async def test_what_a_robot_has_that_rode_on_after_it_failed_is_fetched_where_it_stands() -> None:
+    async with working("a", "e") as work:
+        fetching = await _with_tea_aboard_r0_fails(work)
+        work.site.standing["r0"] = (9.5, 0.0, 0.0)
+        work.site.changed()
+        again = await work.runs.nth(4)
+        assert fetching.ended.result() == ("aborted", False)
+        assert again.robot == "r1"
+        assert again.parameters["place"] != fetching.parameters["place"]
+
+
 async def test_what_was_fetched_just_as_its_robot_was_put_back_is_brought_by_who_has_it() -> None:
     async with working("a", "e") as work:
         fetching = await _with_tea_aboard_r0_fails(work)

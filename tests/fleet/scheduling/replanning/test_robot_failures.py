@@ -14,6 +14,7 @@ from mend.fleet.scheduling.replanning.events import (
     NewItem,
     RobotBack,
     RobotFailed,
+    RobotMoved,
     SetOut,
     StopFailed,
     StopMade,
@@ -58,6 +59,18 @@ def test_what_is_still_in_its_basket_is_aboard_again() -> None:
     assert (item.state, item.robot, item.held_by) == (ItemState.ABOARD, 0, None)
     assert stops(fleet, "left") == ["drop first at e"]
     assert stops(fleet, "right") == []
+
+
+def test_where_it_is_moved_to_it_is_fetched() -> None:
+    fleet = failed_at_b()
+    happen(fleet, 11.0, SetOut("right"))
+    happen(fleet, 12.0, RobotMoved("left", "c"))
+    assert fleet.items["first"].held_by == 0
+    assert not fleet.robots["right"].held, "it was on its way to where nothing is any more"
+    happen(fleet, 13.0, StopFailed("right", "d", 13.0))
+    assert stops(fleet, "right") == ["pick first at c", "drop first at e"]
+    happen(fleet, 15.0, RobotBack("left", "c"))
+    assert stops(fleet, "left") == ["drop first at e"]
 
 
 def test_who_is_under_way_to_fetch_it_is_called_off() -> None:
