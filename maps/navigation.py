@@ -86,6 +86,10 @@ class NavigationGraph:
         """The number of a place. Raises `KeyError`."""
         return self._index[name]
 
+    def place(self, name: str) -> Place:
+        """A place by its name. Raises `KeyError`."""
+        return self.places[self._index[name]]
+
     def together(self, between: Iterable[str]) -> frozenset[frozenset[str]]:
         """The ways that are closed with one: of an elevator all its rides, else that one alone.
 

@@ -104,7 +104,7 @@ class FleetAtWork:
         )
         self.operators = Operators(self._book, self._errands, self._execution_of, self._send)
         self._failed_robots = FailedRobots(dispatcher, site.whereabouts, self._book.met_at)
-        self._found_ways = FoundWays(dispatcher, self._book.closed_ways)
+        self._found_ways = FoundWays(dispatcher, self._book.closed_ways, site.whereabouts)
         self._charging = Charging(dispatcher, site.battery, places.names)
         meetings = Meetings(dispatcher.building, site.frames, places.names, self._occupation)
         self._meeting_watch = MeetingWatch(

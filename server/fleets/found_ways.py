@@ -1,16 +1,34 @@
 """What robots find of ways, and what comes of it: a way is closed, or another robot goes."""
 
+from collections.abc import Callable
+
+import numpy as np
+
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found, Leg
+from mend.maps.building.clearance import distances_m
 from mend.server.fleets.closed_ways import ClosedWays
 from mend.server.fleets.robot_findings import is_led_round
+from mend.tasks.potential import Point
+
+ON_LANE_M = 0.6
+"""Who is no farther from a lane stands on it."""
 
 
 class FoundWays:
-    """Tells one dispatcher what its robots find, each finding once."""
+    """Tells one dispatcher what its robots find, each finding once.
 
-    def __init__(self, dispatcher: Dispatcher, closed: ClosedWays) -> None:
+    `whereabouts`: where a robot says that it is, in the frame of the building.
+    """
+
+    def __init__(
+        self,
+        dispatcher: Dispatcher,
+        closed: ClosedWays,
+        whereabouts: Callable[[str], Point | None],
+    ) -> None:
         self._dispatcher, self._closed = dispatcher, closed
+        self._whereabouts = whereabouts
         self._told: dict[str, tuple[int, Finding, frozenset[str]]] = {}
         """By robot, what it has last found of which way, and on which leg."""
 
@@ -19,6 +37,9 @@ class FoundWays:
 
         Raises a `RefusalError` for what makes no sense to it.
         """
+        if found.finding is not Finding.OPEN and self._is_barred_by_a_robot(found):
+            # It goes on before long.
+            return False
         legs = self._dispatcher.legs_under_way()
         leg = next((each for each in legs if each.robot == found.by), None)
         if self._is_told_already(found, leg):
@@ -29,6 +50,20 @@ class FoundWays:
             return False
         self._closed.note(found, found.by)
         return True
+
+    def _is_barred_by_a_robot(self, found: Found) -> bool:
+        """Whether another robot that works stands on the way that was found barred."""
+        ends = (self._dispatcher.building.find(each) for each in found.between)
+        a, b = (self._dispatcher.building.graph.place(each) for each in ends)
+        lane, floor = np.array([[a.x_m, a.y_m, b.x_m, b.y_m]]), found.between[0].split("/", 1)[0]
+        for name, robot in self._dispatcher.fleet.robots.items():
+            at = self._whereabouts(name)
+            if name == found.by or not robot.works or at is None:
+                continue
+            on_floor = self._dispatcher.building.floor_at(at[2]) == floor
+            if on_floor and distances_m(np.array([at[:2]]), lane)[0] < ON_LANE_M:
+                return True
+        return False
 
     def _is_told_already(self, found: Found, leg: Leg | None) -> bool:
         """Whether a robot has told others of it before, and asks people about it now."""

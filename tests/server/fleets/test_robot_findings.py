@@ -17,9 +17,11 @@ from mend.maps.building.building import Building, BuildingDocument, Floor, Floor
 from mend.maps.navigation import NavigationGraph, Place, Way
 from mend.robots.link.messages import LASER, Detection
 from mend.server.access.deeds import deed_of
+from mend.server.fleets.closed_ways import ClosedWays
 from mend.server.fleets.fleet_at_work import OTHERS_S, FleetAtWork
 from mend.server.fleets.fleet_record import FleetRecord
 from mend.server.fleets.fleets import KIND
+from mend.server.fleets.found_ways import FoundWays
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.robot_findings import is_led_round
 from mend.server.journal import events as ev
@@ -141,6 +143,28 @@ async def test_what_a_robot_goes_round_by_itself_is_closed_to_all() -> None:
         going = await work.runs.nth(1)
         await work.found(going, "blocked", "f/b", "f/c")
         await work.until(lambda _: work.site.kept_off == {BC})
+
+
+@pytest.mark.parametrize(
+    ("x", "works", "closes"),
+    [(15.0, True, False), (15.0, False, True), (5.0, True, True)],
+    ids=["on it", "failed on it", "elsewhere"],
+)
+def test_what_another_robot_bars_that_works_is_closed_to_nobody(
+    x: float, *, works: bool, closes: bool
+) -> None:
+    dispatcher = Work(RING, starts="ae").dispatcher
+    dispatcher.submit(visit(place="c"), 0.0)
+    (leg,) = dispatcher.legs_to_begin(0.0)
+    dispatcher.began(leg, 0.0)
+    (other,) = {"r0", "r1"} - {leg.robot}
+    if not works:
+        dispatcher.robot_failed(other, None, "a squeak", 1.0)
+    at = {other: (x, 0.3, 0.0)}
+    found_ways = FoundWays(dispatcher, ClosedWays(dispatcher, ()), at.get)
+    found = Found(finding=Finding.BLOCKED, between=("f/b", "f/c"), by=leg.robot)
+    assert found_ways.take(found, 2.0) is closes
+    assert (BC in dispatcher.closed_until_s()) is closes
 
 
 async def test_what_was_closed_before_a_restart_is_kept_off_after_it() -> None:
