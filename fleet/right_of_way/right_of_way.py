@@ -36,6 +36,8 @@ _LATER, _LATER_S = 1.3, 4.0
 MOST_TIMES = 4
 """So often the same two resolve it in a row; after that people are asked."""
 FORGET_S = 60.0
+AGAIN_S = 2.0
+"""So long two of whom neither could make way are not looked at again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +77,7 @@ class RightOfWay:
         self._radius_m, self._speed_m_s = radius_m, speed_m_s
         self._under_way: dict[str, Yielding] = {}
         self._times: dict[frozenset[str], tuple[int, float]] = {}
+        self._again_s: dict[frozenset[str], float] = {}
 
     def making_way(self, now_s: float) -> Mapping[str, Yielding]:
         """Who makes way now."""
@@ -86,14 +89,18 @@ class RightOfWay:
         resolved = {frozenset((e.robot, e.other)) for e in self.making_way(now_s).values()}
         for robot in (name for name, each in standings.items() if each.barred):
             other = self._met(robot, standings)
-            if other is None or frozenset((robot, other)) in resolved:
+            if other is None:
                 continue
-            if self._resolved_often({robot, other}, now_s):
+            pair = frozenset((robot, other))
+            if pair in resolved or self._resolved_often(pair, now_s):
+                continue
+            if now_s < self._again_s.get(pair, -math.inf):
                 continue
             decided = self._between(robot, other, standings, now_s)
             if decided is not None:
                 self._note(decided, now_s)
                 return decided
+            self._again_s[pair] = now_s + AGAIN_S
         return None
 
     # --- Within -------------------------------------------------------------------------------
@@ -195,8 +202,8 @@ class RightOfWay:
         past = ahead[: 1 + (int(passed[-1]) if len(passed) else 0)]
         return _LATER_S + _LATER * (_length_m(made) + _length_m(past)) / self._speed_m_s
 
-    def _resolved_often(self, pair: set[str], now_s: float) -> bool:
-        times, last_s = self._times.get(frozenset(pair), (0, -math.inf))
+    def _resolved_often(self, pair: frozenset[str], now_s: float) -> bool:
+        times, last_s = self._times.get(pair, (0, -math.inf))
         return times >= MOST_TIMES and now_s < last_s + FORGET_S
 
     def _note(self, decided: Yielding, now_s: float) -> None:

@@ -1,12 +1,16 @@
 """Looks whether robots of a site have met whenever one says that it does not get on."""
 
 import asyncio
+import math
 from collections.abc import Callable
 
 from mend.fleet.right_of_way.right_of_way import Yielding
 from mend.robots.link.messages import MakeWay, Poses
 from mend.server.background import Endless
 from mend.server.fleets.meetings import Meetings
+
+EVERY_S = 0.5
+"""It looks no more often, by the site's clock."""
 
 
 class MeetingWatch:
@@ -25,10 +29,11 @@ class MeetingWatch:
     ) -> None:
         self._meetings, self._told, self._met, self._now_s = meetings, told, met, now_s
         self._news = asyncio.Event()
+        self._looks_s = -math.inf
 
     def take(self, robot: str, poses: Poses) -> None:
         """A robot says where it is."""
-        if self._meetings.take(robot, poses):
+        if self._meetings.take(robot, poses) and self._now_s() >= self._looks_s:
             self._news.set()
 
     async def run(self) -> None:
@@ -42,6 +47,7 @@ class MeetingWatch:
 
     async def _resolve(self) -> None:
         now_s, standings = self._now_s(), self._meetings.standings()
+        self._looks_s = now_s + EVERY_S
         decided = await asyncio.to_thread(self._meetings.decide, standings, now_s)
         if decided is None:
             return

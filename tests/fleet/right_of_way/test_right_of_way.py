@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from mend.fleet.right_of_way.floor_grid import Point, sampled
 from mend.fleet.right_of_way.right_of_way import (
+    AGAIN_S,
     APART_M,
     FORGET_S,
     MOST_TIMES,
@@ -129,7 +130,9 @@ def test_where_neither_can_nobody_does() -> None:
     pipe = two_rooms(
         (0, 1.5, 10, 1.5), (0, 2.5, 10, 2.5), (3.9, 1.5, 3.9, 2.5), (6.1, 1.5, 6.1, 2.5)
     )
-    assert right_of_way(pipe).decide(MET, 0.0) is None
+    rights = right_of_way(pipe)
+    assert rights.decide(MET, 0.0) is None
+    assert rights.decide(MET, AGAIN_S + 0.1) is None
 
 
 def test_what_does_not_help_time_and_again_is_left_to_people() -> None:
