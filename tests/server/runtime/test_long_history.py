@@ -196,14 +196,16 @@ async def test_an_older_journal_is_indexed_as_it_is_opened(path: Path, interrupt
 
 async def test_nothing_is_kept_of_the_tasks_of_runs_that_ended(path: Path) -> None:
     async with pretend_service(TWO_PARTS, journal=path) as service:
+        names = set[str]()
         for _ in range(3):
             started = await service.runtime.start_run(REQUEST)
             await service.runtime.wait_for_end(started.id)
+            names.add(f"run {started.id}")
             del started
         gc.collect()
         left = [
             each
             for each in gc.get_objects()
-            if isinstance(each, asyncio.Task) and each.get_name().startswith("run ")
+            if isinstance(each, asyncio.Task) and each.get_name() in names
         ]
         assert left == []
