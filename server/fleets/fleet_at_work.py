@@ -307,7 +307,7 @@ class FleetAtWork:
 
     def _have_met(self, decided: Yielding, place: str | None) -> None:
         """A robot makes way for another one; `place`: where it is to go for that, if it rests."""
-        told = f"met {decided.other} where they cannot pass each other, and makes way for it"
+        told = f"met {decided.other} where they cannot pass each other, and is to make way"
         self._book.note(self._book.news.told(told, finder=decided.robot))
         if place is not None:
             self._asked_aside[decided.robot] = place

@@ -1,5 +1,6 @@
 """What robots find of ways, and what comes of it: a way is closed, or another robot goes."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -13,6 +14,8 @@ from mend.tasks.potential import Point
 
 ON_LANE_M = 0.6
 """Who is no farther from a lane stands on it."""
+BEFORE_M = 1.5
+"""Who stands before something is no farther from the middle of that."""
 
 
 class FoundWays:
@@ -37,7 +40,7 @@ class FoundWays:
 
         Raises a `RefusalError` for what makes no sense to it.
         """
-        if found.finding is not Finding.OPEN and self._is_barred_by_a_robot(found):
+        if found.finding is Finding.BLOCKED and self._is_barred_by_a_robot(found):
             # It goes on before long.
             return False
         legs = self._dispatcher.legs_under_way()
@@ -52,7 +55,10 @@ class FoundWays:
         return True
 
     def _is_barred_by_a_robot(self, found: Found) -> bool:
-        """Whether another robot that works stands on the way that was found barred."""
+        """Whether it is another robot that works before which the finder stands on the way."""
+        here = None if found.by is None else self._whereabouts(found.by)
+        if here is None:
+            return False
         ends = (self._dispatcher.building.find(each) for each in found.between)
         a, b = (self._dispatcher.building.graph.place(each) for each in ends)
         lane, floor = np.array([[a.x_m, a.y_m, b.x_m, b.y_m]]), found.between[0].split("/", 1)[0]
@@ -60,8 +66,9 @@ class FoundWays:
             at = self._whereabouts(name)
             if name == found.by or not robot.works or at is None:
                 continue
+            near = math.dist(here[:2], at[:2]) <= BEFORE_M
             on_floor = self._dispatcher.building.floor_at(at[2]) == floor
-            if on_floor and distances_m(np.array([at[:2]]), lane)[0] < ON_LANE_M:
+            if near and on_floor and distances_m(np.array([at[:2]]), lane)[0] < ON_LANE_M:
                 return True
         return False
 

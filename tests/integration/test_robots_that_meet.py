@@ -52,4 +52,4 @@ async def test_one_of_two_that_meet_in_a_door_makes_way_and_nobody_is_asked(
     }
     assert not [each for each in events if isinstance(each, ev.IssueRaised)]
     told = [each.told for each in events if isinstance(each, ev.FleetTold)]
-    assert any("makes way for it" in each for each in told)
+    assert any("is to make way" in each for each in told)

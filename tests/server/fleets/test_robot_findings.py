@@ -146,12 +146,18 @@ async def test_what_a_robot_goes_round_by_itself_is_closed_to_all() -> None:
 
 
 @pytest.mark.parametrize(
-    ("x", "works", "closes"),
-    [(15.0, True, False), (15.0, False, True), (5.0, True, True)],
-    ids=["on it", "failed on it", "elsewhere"],
+    ("x", "works", "finding", "closes"),
+    [
+        (15.0, True, "blocked", False),
+        (15.0, False, "blocked", True),
+        (18.0, True, "blocked", True),
+        (5.0, True, "blocked", True),
+        (15.0, True, "door_closed", True),
+    ],
+    ids=["before it", "failed before it", "farther on", "elsewhere", "a door"],
 )
 def test_what_another_robot_bars_that_works_is_closed_to_nobody(
-    x: float, *, works: bool, closes: bool
+    x: float, finding: str, *, works: bool, closes: bool
 ) -> None:
     dispatcher = Work(RING, starts="ae").dispatcher
     dispatcher.submit(visit(place="c"), 0.0)
@@ -160,9 +166,9 @@ def test_what_another_robot_bars_that_works_is_closed_to_nobody(
     (other,) = {"r0", "r1"} - {leg.robot}
     if not works:
         dispatcher.robot_failed(other, None, "a squeak", 1.0)
-    at = {other: (x, 0.3, 0.0)}
+    at = {other: (x, 0.3, 0.0), leg.robot: (14.2, 0.0, 0.0)}
     found_ways = FoundWays(dispatcher, ClosedWays(dispatcher, ()), at.get)
-    found = Found(finding=Finding.BLOCKED, between=("f/b", "f/c"), by=leg.robot)
+    found = Found(finding=Finding(finding), between=("f/b", "f/c"), by=leg.robot)
     assert found_ways.take(found, 2.0) is closes
     assert (BC in dispatcher.closed_until_s()) is closes
 
