@@ -8,15 +8,14 @@ from mend.robots.catalogue import Part
 from mend.robots.link.messages import Sighting
 from mend.robots.vision.blob import Blob
 
-_TOPPLED_M = 0.012
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeadSighting:
     """An object in the head picture, in the base frame.
 
     (x, y, z) is the bottom centre, `yaw` of the part's own x axis (in [-pi/2, pi/2): parts look
-    the same after half a turn), `top_z` the height of its top surface, without its knob.
+    the same after half a turn), `top_z` the height of its top surface, without its knob. What has
+    `toppled` lies on a side: bottom, top and axis are then those of how it lies.
     `complete` is False when so much of the top is hidden or outside the picture that the place
     may be wrong. `shown` is the share of the top that is seen.
     """
@@ -30,10 +29,7 @@ class HeadSighting:
     shown: float
     blob: Blob
     time: float
-
-    def upright(self, table_z: float) -> bool:
-        """Whether it can stand as it was built: a toppled part's top is too low for that."""
-        return self.z >= table_z - _TOPPLED_M
+    toppled: bool = False
 
     def to_message(self, part: Part) -> Sighting:
         """As the robot protocol tells it: with the yaw of the long axis."""

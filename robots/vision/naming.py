@@ -32,6 +32,8 @@ _EXTENT_SIGMA_PX = 0.45
 _FLOATING_COST = 10.0
 """What is held up by nothing that is seen may be held by somebody, or lean."""
 _TOPPLED_COST = 4.0
+_SURELY_TOPPLED = math.log(99.0)
+"""It stands unless it has toppled with this log odds."""
 _KNOB_UNSEEN_COST = 8.0
 _MOST_COLOR_COST = 40.0
 _MOST_SHARE_COST = 4.0
@@ -102,6 +104,7 @@ class Namer:
         self._extents = np.array([way.extents for way in self._ways])
         self._heights = np.array([way.height_m for way in self._ways])
         self._base = np.array([way.cost for way in self._ways])
+        self._lying = np.array([not way.upright for way in self._ways])
         self._knobbed = np.array([way.with_knob for way in self._ways])
         self._knob_extents = np.array([(way.part.knob or way.part.size)[:2] for way in self._ways])
         owners = {part.name: index for index, part in enumerate(self._parts)}
@@ -131,9 +134,10 @@ class Namer:
             at = pixel_m[top.surface.vs[0], top.surface.us[0]]
             by_way, swapped = self._geometry_costs(top, supports, float(at))
             chosen = np.empty(len(self._parts), np.intp)
+            less_surely = by_way + np.where(self._lying, _SURELY_TOPPLED, 0.0)
             for index in range(len(self._parts)):
                 ways = np.flatnonzero(self._owner == index)
-                chosen[index] = ways[by_way[ways].argmin()]
+                chosen[index] = ways[less_surely[ways].argmin()]
             costs[row, : len(self._parts)] = by_way[chosen]
             costs[row, : len(self._parts)] += self._tint_costs(top.surface, surfaces.table_color)
             for index in np.flatnonzero(costs[row, : len(self._parts)] < UNKNOWN_COST).tolist():

@@ -52,7 +52,7 @@ class Presence(StrEnum):
 
 def is_at(sighting: HeadSighting, part: Part, target: Location, target_z: float) -> bool:
     """Whether a part rests where it is to be, with its bottom at `target_z`."""
-    near = is_near(sighting, part, target)
+    near = is_near(sighting, part, target) and not sighting.toppled
     return near and abs(sighting.z - target_z) <= AT_PLACE_HEIGHT_M
 
 
@@ -131,7 +131,7 @@ def top_px(image: CameraImage, room: SeenBox) -> NDArray[np.bool_]:
 
 
 def _stands_at(box: SeenBox, part: Part, target: Location, bottom_z: float) -> bool:
-    near = is_near(box, part, target)
+    near = is_near(box, part, target) and not box.toppled
     return near and abs(box.bottom_z - bottom_z) <= AT_PLACE_HEIGHT_M
 
 

@@ -16,7 +16,7 @@ class SeenBox:
     (x, y) is its centre, `yaw` the direction of its own x axis, `size` its length along that,
     its width and its height above `bottom_z`. `name` is the catalogue's part that it was taken
     for, None for something unknown; a plate with a knob is two boxes of one name. `complete` is
-    False where part of its top is not seen.
+    False where part of its top is not seen, `toppled` tells of a part that it lies on a side.
     """
 
     x: float
@@ -26,6 +26,7 @@ class SeenBox:
     bottom_z: float
     name: str | None
     complete: bool
+    toppled: bool = False
 
     @property
     def top_z(self) -> float:

@@ -177,17 +177,18 @@ def _sighting(match: Match, fitted: Fitted, image: CameraImage) -> HeadSighting:
     shown = min(fitted.shown / _visible_share(match, found, image), 1.0)
     ends = fitted.sides_seen
     placed = (ends[0] or ends[1]) and (ends[2] or ends[3])
-    bottom_z = top.top_z - (match.height_m if match.upright else part.size[2])
+    bottom_z = top.top_z - match.height_m
     return HeadSighting(
         x=found.x,
         y=found.y,
         z=bottom_z,
         yaw=half_turn(found.yaw),
-        top_z=bottom_z + part.size[2],
+        top_z=bottom_z + part.size[2] if match.upright else top.top_z,
         complete=placed and shown >= _COMPLETE_SHARE,
         shown=shown,
         blob=_blob(top, image),
         time=image.time,
+        toppled=not match.upright,
     )
 
 
@@ -213,9 +214,8 @@ def _boxes(match: Match, at: HeadSighting) -> list[SeenBox]:
     if match.upright:
         stands = Location(x=at.x, y=at.y, z=at.z, yaw=at.yaw)
         return boxes_of(match.part, stands, at.z, complete=at.complete)
-    bottom_z = match.top.surface.top_z - match.height_m
     size = (*match.extents, match.height_m)
-    return [SeenBox(at.x, at.y, at.yaw, size, bottom_z, match.part.name, at.complete)]
+    return [SeenBox(at.x, at.y, at.yaw, size, at.z, match.part.name, at.complete, True)]
 
 
 def boxes_of(part: Part, at: Location, bottom_z: float, *, complete: bool) -> list[SeenBox]:

@@ -46,7 +46,7 @@ class LastSeen:
     def note_sighting(self, name: str, seen: HeadSighting) -> None:
         """A part was seen."""
         self.note(name, (seen.x, seen.y, seen.z))
-        if seen.complete:
+        if seen.complete and not seen.toppled:
             self._whole[name] = Location(x=seen.x, y=seen.y, z=seen.z, yaw=seen.yaw)
 
     def note_gone(self, name: str) -> None:

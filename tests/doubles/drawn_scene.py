@@ -1,11 +1,13 @@
 """Coloured boxes drawn under a known camera, with depth."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from mend.robots.body import CameraImage
 from mend.robots.catalogue import Part
@@ -45,6 +47,16 @@ class Resting:
         )
 
 
+def on_its_side(part: Part, at: Resting, about: str) -> NDArray[np.float64]:
+    """Turned by 90 degrees about one of its own axes."""
+    turn = Rotation.from_euler(about, 90, degrees=True).as_matrix()
+    half_m = part.size[1 if about == "x" else 0] / 2
+    middle = np.eye(4)
+    middle[:3, :3] = turn
+    middle[:3, 3] = (0.0, 0.0, half_m) - turn @ (0.0, 0.0, part.size[2] / 2)
+    return at.matrix() @ middle
+
+
 def look_at(eye: tuple[float, float, float], target: tuple[float, float, float]):
     """An optical frame at `eye` that looks at `target`, its picture's up being up."""
     forward = np.array(target) - np.array(eye)
@@ -71,6 +83,7 @@ class DrawnScene:
     noise: float = 0.0
     light: float = 1.0
     seed: int = 0
+    built: Mapping[str, Part] = field(default_factory=lambda: PARTS)
 
     def picture(
         self, pose=HEAD_POSE, width=640, height=480, focal_px=526.0, time=0.0, with_depth=True
@@ -83,7 +96,7 @@ class DrawnScene:
             canvas.box(Resting(*middle).matrix(), extents, (95, 92, 90))
         for name, where in self.parts.items():
             matrix = where.matrix() if isinstance(where, Resting) else where
-            part = PARTS[name]
+            part = self.built[name]
             canvas.box(matrix, part.size, COLORS[name])
             if part.knob is not None:
                 raised = matrix.copy()

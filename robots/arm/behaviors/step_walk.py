@@ -26,7 +26,7 @@ from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import StepStarted
 
 _MOST_REGRASPS = 2
-"""Who pushes a part aside more often than this is told that it was missed."""
+"""What is askew once more is carried as it is: the last look tells whether it then stands there."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,7 +37,7 @@ class InReach:
             return False
         before, self._before = self._before, perception.head.sight(self._part, image)
         now = self._before
-        if before is None or now is None or not now.upright(perception.catalogue.table.height):
+        if before is None or now is None or now.toppled:
             return False
         moved_m = math.dist((now.x, now.y, now.z), (before.x, before.y, before.z))
         if moved_m > _STILL_M:

@@ -58,7 +58,7 @@ class Undone(ArmMonitor[UndoneParameters]):
 
     def _before_the_first_step(self, name: str, view: ArmView) -> Detection | None:
         if view.sighting is not None and (
-            view.refusal is not None or why_lying(name, view.sighting, view) is not None
+            view.refusal is not None or why_lying(name, view.sighting) is not None
         ):
             # Where it is now is what people have to hear of: `unreachable` tells them.
             return None
@@ -110,7 +110,7 @@ def _detection(what: str, sighting: HeadSighting | None, view: ArmView) -> Detec
 def _what_differs(sighting: HeadSighting, view: ArmView) -> str:
     """In what it is seen to be otherwise than at its place, as the end of a clause."""
     at = f"at ({sighting.x:.2f}, {sighting.y:.2f})"
-    if not sighting.upright(view.table_z):
+    if sighting.toppled:
         return f": it has toppled over, {at}"
     if view.target is None:
         return f": it is {at}"

@@ -50,7 +50,7 @@ class Unreachable(ArmMonitor[UnreachableParameters]):
             return refusal
         if refusal is not None or margin_m > 0.0:
             return why_beyond_reach(name, view.sighting, view, margin_m) or refusal
-        return why_lying(name, view.sighting, view)
+        return why_lying(name, view.sighting)
 
 
 def why_beyond_reach(
@@ -65,11 +65,11 @@ def why_beyond_reach(
     low, high = view.reach.min_m + margin_m, view.reach.max_m - margin_m
     if not low <= distance <= high:
         return f"{name} is {distance:.2f} m away; the arm grasps {low:.2f} to {high:.2f} m"
-    return why_lying(name, sighting, view)
+    return why_lying(name, sighting)
 
 
-def why_lying(name: str, sighting: HeadSighting, view: ArmView) -> str | None:
+def why_lying(name: str, sighting: HeadSighting) -> str | None:
     """Why the arm cannot grasp what is seen there as it lies."""
-    if not sighting.upright(view.table_z):
+    if sighting.toppled:
         return f"{name} has toppled over; the arm grasps it standing only"
     return None

@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
+from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting, on_its_side
 from monitor_view import SEEN
 from scripted_body import view_of
 
@@ -52,6 +52,15 @@ def test_what_is_under_something_unknown_is_not_seen(top_m: float, told: Presenc
     cover = SeenBox(0.55, -0.2, 0.0, (0.12, 0.12, top_m), TABLE_Z, None, complete=True)
     view = replace(view, boxes=[cover])
     assert judge_presence(view, PARTS["green_leg"], {"green_leg"}, STOOD, TABLE_Z) is told
+
+
+def test_what_lies_on_a_side_at_its_place_is_not_there() -> None:
+    strip = Part("green_leg", (0.014, 0.154, 0.023))
+    lying = on_its_side(strip, Resting(STOOD.x, STOOD.y), "y")
+    scene = DrawnScene({"green_leg": lying}, built={"green_leg": strip})
+    view = view_of(scene.picture(), {"green_leg": strip})
+    assert not is_at(view.sightings["green_leg"], strip, STOOD, TABLE_Z)
+    assert judge_presence(view, strip, {"green_leg"}, STOOD, TABLE_Z) is Presence.GONE
 
 
 def is_at_with(size: Size, turned: float, *, x: float = 0.0, complete: bool = True) -> bool:

@@ -4,7 +4,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from drawn_scene import TABLE_Z, DrawnScene
+from drawn_scene import DrawnScene
 from monitor_view import BLOB, SEEN, VIEW
 from pydantic import ValidationError
 
@@ -101,16 +101,16 @@ NO_PATH = "the arm finds no path for it"
 
 
 @pytest.mark.parametrize(
-    ("x", "z", "refusal", "says"),
+    ("x", "toppled", "refusal", "says"),
     [
-        (0.95, TABLE_Z, NO_PATH, "0.97 m away; the arm grasps 0.30 to 0.80 m"),
-        (0.1, TABLE_Z, NO_PATH, "0.22 m away"),
-        (0.5, TABLE_Z, NO_PATH, "finds no path"),
-        (0.5, TABLE_Z - 0.05, None, "toppled over"),
+        (0.95, False, NO_PATH, "0.97 m away; the arm grasps 0.30 to 0.80 m"),
+        (0.1, False, NO_PATH, "0.22 m away"),
+        (0.5, False, NO_PATH, "finds no path"),
+        (0.5, True, None, "toppled over"),
     ],
 )
-def test_unreachable_says_why(x, z, refusal, says) -> None:
-    sighting = replace(SEEN, x=x, z=z)
+def test_unreachable_says_why(x, toppled, refusal, says) -> None:
+    sighting = replace(SEEN, x=x, toppled=toppled)
     detection = Unreachable.create({}).check(replace(VIEW, sighting=sighting, refusal=refusal))
     assert detection is not None
     assert says in detection.explanation

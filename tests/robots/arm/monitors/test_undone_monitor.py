@@ -72,7 +72,7 @@ def test_it_says_in_what_the_object_differs_from_what_was_placed(
 
 
 def test_what_has_toppled_over_at_its_place_is_not_said_to_be_elsewhere() -> None:
-    lying = replace(SEEN, z=TABLE_Z - 0.02)
+    lying = replace(SEEN, toppled=True)
     target = Location(x=lying.x, y=lying.y)
     detection = Undone.create({}).check(replace(AFTER, placed=lying, target=target))
     assert detection is not None
@@ -101,7 +101,7 @@ def test_once_somebody_was_asked_and_it_is_there_nothing_more_is_said() -> None:
     [
         {"was_done": None},
         {"part": None},
-        {"sighting": replace(SEEN, z=TABLE_Z - 0.05)},
+        {"sighting": replace(SEEN, toppled=True)},
         {"refusal": "the arm finds no path for it"},
     ],
 )
