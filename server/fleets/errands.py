@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterable, Mapping
 from uuid import UUID, uuid4
 
 from mend.errors import ConflictError, RefusalError
-from mend.fleet.dispatch.dispatcher import Dispatcher
+from mend.server.fleets.charging import Charging
+from mend.server.fleets.fleet_book import FleetBook
 from mend.server.fleets.fleet_record import Errand
 from mend.server.fleets.leg_task import charging_at, way_of, way_request
-from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.runs import Runs
+from mend.server.journal import events as ev
 from mend.server.runtime.views import RunStatus
 from mend.server.sites.requests import FleetOptions
 from mend.server.sites.site import Site
@@ -25,18 +26,19 @@ class Errands:
     def __init__(
         self,
         site: Site,
-        dispatcher: Dispatcher,
-        places: PlaceNames,
         options: Callable[[], FleetOptions],
         runs: Runs,
+        book: FleetBook,
+        charging: Charging,
         going: Iterable[Errand],
     ) -> None:
         """`going`: those that were under way when the service stopped. `options`: as they are by
         then when an errand begins.
         """
-        self._site, self._dispatcher, self._places = site, dispatcher, places
-        self._options, self._runs = options, runs
+        self._site, self._options, self._runs = site, options, runs
+        self._book, self._charging, self._dispatcher = book, charging, book.dispatcher
         self._going = {each.robot: each for each in going}
+        self._tasks: dict[str, asyncio.Task[None]] = {}
         self._unwanted: set[UUID] = set()
         """The runs that were broken off before they had begun."""
 
@@ -62,19 +64,53 @@ class Errands:
             busy = "has not come to rest yet" if run is None else f"is busy with run {run}"
             raise ConflictError(f"robot '{robot}' {busy}")
 
-    def add(self, robot: str, place: str, *, charges: bool = False) -> Errand:
-        """One that is to be carried out, to a place as `FLOOR/PLACE`."""
+    @property
+    def tasks(self) -> list[asyncio.Task[None]]:
+        """What is to be cancelled where the service stops."""
+        return list(self._tasks.values())
+
+    def send(
+        self, robot: str, place: str, author: ev.Author | None, *, charges: bool = False
+    ) -> None:
+        """Have a robot without a leg go to a place (`FLOOR/PLACE`), once that is journaled."""
         errand = Errand(robot=robot, place=place, run=uuid4(), charges=charges)
         self._going[robot] = errand
-        return errand
+        self._book.note(self._book.news.errand_begun(errand, self._book.at(robot), author))
 
-    async def carry_out(self, errand: Errand) -> str | None:
+    def carry_out(self, errand: Errand) -> None:
+        """Have its robot go, unless it does so already."""
+        if errand.robot not in self._tasks:
+            task = asyncio.create_task(self._follow(errand), name=f"errand of {errand.robot}")
+            self._tasks[errand.robot] = task
+
+    async def _follow(self, errand: Errand) -> None:
+        robot, begun = errand.robot, True
+        try:
+            reason = await self._run(errand)
+        except RefusalError as error:
+            reason, begun = str(error)[:_LONGEST], False
+        except Exception:
+            # Its robot would be thought to be on its way for ever.
+            log.exception("an errand of %s could not be carried out", robot)
+            reason, begun = "a fault of Mend's own; see its log", False
+        async with self._book.at_once:
+            at = errand.place if reason is None else self._book.at(robot)
+            if errand.charges and reason is not None:
+                self._charging.could_not(robot, self._book.now_s)
+            self._book.note(self._book.news.errand_ended(errand, at, reason))
+            self._end(errand, at)
+            await self._book.keep()
+        if begun:
+            self._book.changed.set()
+        # Else whatever changes next has it tried again, where it makes way.
+
+    async def _run(self, errand: Errand) -> str | None:
         """Have its robot go there; returns why it has not come there, if so.
 
         Raises a `RefusalError` where it cannot be begun.
         """
         request = way_request(self._site.id, errand.robot, self._options())
-        place = self._places.in_scene(errand.place)
+        place = self._book.places.in_scene(errand.place)
         tree = charging_at(place) if errand.charges else way_of(place)
         await self._runs.start_run_of(errand.run, request, tree)
         if errand.run in self._unwanted:
@@ -97,9 +133,12 @@ class Errands:
             log.info("the errand of %s was over, or not begun: %s", errand.robot, error)
             self._unwanted.add(errand.run)
 
-    def end(self, errand: Errand, at: str) -> None:
+    def _end(self, errand: Errand, at: str) -> None:
         """Its robot is at a place, which plans know from now on."""
-        del self._going[errand.robot]
+        del self._going[errand.robot], self._tasks[errand.robot]
         self._unwanted.discard(errand.run)
         if self._dispatcher.fleet.robots[errand.robot].works:
-            self._dispatcher.robot_moved(errand.robot, at, self._dispatcher.now_s)
+            try:
+                self._dispatcher.robot_moved(errand.robot, at, self._dispatcher.now_s)
+            except ConflictError as error:
+                log.info("where %s has gone changes no plan: %s", errand.robot, error)

@@ -4,15 +4,15 @@ import asyncio
 import logging
 from collections.abc import Callable, Mapping
 from datetime import datetime
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Literal, TypeVar
 from uuid import UUID
 
-from mend.errors import ConflictError, RefusalError
+from mend.errors import RefusalError
 from mend.fleet.asking.spoken_places import SpokenPlaces
 from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
-from mend.fleet.dispatch.leg import Found, Leg, LegEnd, LegOutcome
+from mend.fleet.dispatch.leg import Found, Leg
 from mend.fleet.requests import RequestKind
 from mend.fleet.right_of_way.right_of_way import Yielding
 from mend.robots.link.messages import Poses
@@ -26,8 +26,8 @@ from mend.server.fleets.fleet_book import FleetBook
 from mend.server.fleets.fleet_news import FleetNews
 from mend.server.fleets.fleet_record import Errand, FleetRecord
 from mend.server.fleets.found_ways import FoundWays
-from mend.server.fleets.leg_execution import LegExecution, LegTurn
 from mend.server.fleets.leg_task import doable_kinds, require_doable, taken_out
+from mend.server.fleets.legs_under_way import LegsUnderWay
 from mend.server.fleets.making_way import who_makes_way
 from mend.server.fleets.meeting_watch import MeetingWatch
 from mend.server.fleets.meetings import Meetings, Occupation
@@ -39,7 +39,6 @@ from mend.server.fleets.runs import Runs
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Journal
 from mend.server.poses.bases import SeenBase
-from mend.server.sites.odometer import Odometer
 from mend.server.sites.requests import FleetOptions
 from mend.server.sites.site import Site
 from mend.tasks.plugins import load_plugins
@@ -80,19 +79,8 @@ class FleetAtWork:
         self._site = site
         self.places = places
         self._options = options
-        self._runs = runs
         self._journal = journal
         self._pace = pace
-        self._legs: dict[str, tuple[LegExecution, asyncio.Task[None]]] = {}
-        self._errands = Errands(
-            site,
-            dispatcher,
-            places,
-            lambda: self._options,
-            runs,
-            () if kept is None else kept.errands,
-        )
-        self._going: dict[str, asyncio.Task[None]] = {}
         self._book = FleetBook(
             site,
             dispatcher,
@@ -102,10 +90,19 @@ class FleetAtWork:
             lambda: tuple(self._errands.going.values()),
             kept,
         )
-        self.operators = Operators(self._book, self._errands, self._execution_of, self._send)
         self._failed_robots = FailedRobots(dispatcher, site.whereabouts, self._book.met_at)
         self._found_ways = FoundWays(dispatcher, self._book.closed_ways, site.whereabouts)
         self._charging = Charging(dispatcher, site.battery, places.names)
+        self._legs = LegsUnderWay(site, lambda: self._options, runs, self._book)
+        self._errands = Errands(
+            site,
+            lambda: self._options,
+            runs,
+            self._book,
+            self._charging,
+            () if kept is None else kept.errands,
+        )
+        self.operators = Operators(self._book, self._errands, self._legs)
         meetings = Meetings(dispatcher.building, site.frames, places.names, self._occupation)
         self._meeting_watch = MeetingWatch(
             meetings, site.make_way, self._have_met, lambda: self.shown_s
@@ -114,8 +111,6 @@ class FleetAtWork:
         self._asked_aside: dict[str, str] = {}
         """Where robots that rest are to go, as they stand in the way of others."""
         self._running: list[asyncio.Task[None]] = []
-        self._set_out: dict[str, Odometer | None] = {}
-        """What robots had driven when they set out for the leg that they are on."""
         self._alarms = Alarms(lambda: self.now_s)
 
     # --- Its life -----------------------------------------------------------------------------
@@ -136,8 +131,7 @@ class FleetAtWork:
     async def stop(self) -> None:
         """Stop without ending anything: it goes on from the journal."""
         self._site.changed = lambda: None
-        tasks = [*(task for _, task in self._legs.values()), *self._going.values()]
-        tasks += self._running
+        tasks = [*self._legs.tasks, *self._errands.tasks, *self._running]
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
@@ -154,20 +148,20 @@ class FleetAtWork:
         async with self._book.at_once:
             free = [each for each in self.dispatcher.fleet.robots if self._is_free(each)]
             for robot, charger in self._charging.to_send(free, self.now_s):
-                self._send(robot, charger, None, charges=True)
+                self._errands.send(robot, charger, None, charges=True)
             unwanted = await asyncio.to_thread(self._decide, self.now_s)
             asked, self._asked_aside = self._asked_aside, {}
             aside = [*asked.items(), *who_makes_way(self.dispatcher, self.places.names)]
             for robot, to in aside:
                 if robot not in self._errands.going and self._site.rests(robot):
-                    self._send(robot, to, None)
+                    self._errands.send(robot, to, None)
             await self._book.keep()
             under_way = self.dispatcher.legs_under_way()
             robots = self.dispatcher.fleet.robots.items()
             failed = [name for name, each in robots if not each.works]
             self._site.keep_off(self.dispatcher.closed_until_s(), failed)
             self._site.note_taken(taken_out(self.dispatcher))
-            for execution, _ in self._legs.values():
+            for execution in self._legs.executions.values():
                 execution.look_again()
             self._alarms.ring()
             self._let_time_pass()
@@ -176,14 +170,11 @@ class FleetAtWork:
         for errand in charged:
             await self._errands.break_off(errand)
         for errand in errands:
-            if errand.robot not in self._going:
-                task = asyncio.create_task(self._go(errand), name=f"errand of {errand.robot}")
-                self._going[errand.robot] = task
+            self._errands.carry_out(errand)
         for leg in under_way:
-            if leg.robot not in self._legs:
-                self._carry_out(leg)
+            self._legs.carry_out(leg)
         # Nothing is begun after a break: what was under way may be over by then.
-        for execution in [self._legs[leg.robot][0] for leg in unwanted]:
+        for execution in [self._legs.executions[leg.robot] for leg in unwanted]:
             await execution.break_off()
 
     def _decide(self, now_s: float) -> list[Leg]:
@@ -199,10 +190,7 @@ class FleetAtWork:
             self.dispatcher.robot_moved(robot, at, now_s)
         unwanted = self.dispatcher.legs_to_withdraw(now_s)
         while due := [e for e in self.dispatcher.legs_to_begin(now_s) if self._is_free(e.robot)]:
-            start = self._book.at(due[0].robot)
-            self.dispatcher.began(due[0], now_s)
-            self._set_out[due[0].robot] = self._site.odometer(due[0].robot)
-            self._book.note(self._book.news.begun(due[0], start))
+            self._legs.note_begun(due[0])
         return unwanted
 
     def _is_free(self, robot: str) -> bool:
@@ -240,7 +228,7 @@ class FleetAtWork:
             wakes_s = self.dispatcher.wakes_s()
         if alarm_s is not None:
             wakes_s = min(alarm_s, wakes_s or alarm_s)
-        if any(execution.waits for execution, _ in self._legs.values()):
+        if any(execution.waits for execution in self._legs.executions.values()):
             wakes_s = min(now_s + LOOKS_AGAIN_S, wakes_s or now_s + LOOKS_AGAIN_S)
         if wakes_s is not None:
             self._site.let_time_pass(max(wakes_s, now_s + 1.0), self._pace)
@@ -250,28 +238,7 @@ class FleetAtWork:
         self._book.changed.set()
         await self._alarms.wait(moment_s)
 
-    # --- Legs ---------------------------------------------------------------------------------
-
-    def _carry_out(self, leg: Leg) -> None:
-        turn = LegTurn(
-            arrived=partial(self._arrived, leg),
-            may_begin=lambda: self.dispatcher.may_begin(leg, self.now_s),
-            now_s=lambda: self.now_s,
-        )
-        execution = LegExecution(self._site, leg, self.places, self._options, self._runs, turn)
-        task = asyncio.create_task(self._follow(leg, execution), name=f"leg of {leg.robot}")
-        self._legs[leg.robot] = execution, task
-
-    async def _follow(self, leg: Leg, execution: LegExecution) -> None:
-        async with self._book.at_once:
-            at_once = self.dispatcher.may_begin(leg, self.now_s)
-        end = await execution.run(at_once=at_once)
-        async with self._book.at_once:
-            if leg.robot in {each.robot for each in self.dispatcher.legs_under_way()}:
-                await asyncio.to_thread(self._end, leg, end)
-            del self._legs[leg.robot]
-            await self._book.keep()
-        self._book.changed.set()
+    # --- What robots tell ---------------------------------------------------------------------
 
     async def _hear(self) -> None:
         """Have plans follow what robots find on their ways."""
@@ -313,68 +280,13 @@ class FleetAtWork:
             self._asked_aside[decided.robot] = place
         self._book.changed.set()
 
-    def _execution_of(self, robot: str) -> LegExecution | None:
-        return self._legs[robot][0] if robot in self._legs else None
-
     def _occupation(self, robot: str) -> Occupation:
-        leg, errand = self._legs.get(robot), self._errands.going.get(robot)
+        leg, errand = self._legs.executions.get(robot), self._errands.going.get(robot)
         if leg is not None:
-            return Occupation(goal=leg[0].place)
+            return Occupation(goal=leg.place)
         if errand is not None:
             return Occupation(goal=errand.place)
         return Occupation(rests=self._site.rests(robot) and robot not in self._book.out_of_service)
-
-    def _send(
-        self, robot: str, place: str, author: ev.Author | None, *, charges: bool = False
-    ) -> None:
-        """Have a robot without a leg go somewhere, once that is journaled."""
-        errand = self._errands.add(robot, place, charges=charges)
-        self._book.note(self._book.news.errand_begun(errand, self._book.at(robot), author))
-
-    async def _go(self, errand: Errand) -> None:
-        robot, begun = errand.robot, True
-        try:
-            reason = await self._errands.carry_out(errand)
-        except RefusalError as error:
-            reason, begun = str(error)[:500], False
-        except Exception:
-            # Its robot would be thought to be on its way for ever.
-            log.exception("an errand of %s could not be carried out", robot)
-            reason, begun = "a fault of Mend's own; see its log", False
-        async with self._book.at_once:
-            at = errand.place if reason is None else self._book.at(robot)
-            if errand.charges and reason is not None:
-                self._charging.could_not(robot, self.now_s)
-            self._book.note(self._book.news.errand_ended(errand, at, reason))
-            try:
-                self._errands.end(errand, at)
-            except ConflictError as error:
-                log.info("where %s has gone changes no plan: %s", robot, error)
-            del self._going[robot]
-            await self._book.keep()
-        if begun:
-            self._book.changed.set()
-        # Else whatever changes next has it tried again, where it makes way.
-
-    def _end(self, leg: Leg, end: LegEnd) -> None:
-        robot, now_s = leg.robot, self.now_s
-        done = end.outcome is LegOutcome.DONE
-        gone = None if self._site.is_connected(robot) else end.reason or "it is gone"
-        why = self._book.out_of_service.get(robot, None if done else gone)
-        if done or why is None:
-            try:
-                self.dispatcher.ended(leg, end, now_s)
-            except ConflictError as error:
-                # What is said to be done cannot have been.
-                refused = LegEnd(outcome=LegOutcome.FAILED, reason=str(error)[:500], at=end.at)
-                self.dispatcher.ended(leg, refused, now_s)
-                end = refused
-        if why is not None:
-            # Others fetch what it has, and do what it was to do.
-            self.dispatcher.robot_failed(robot, self._book.met_at(robot), why, now_s)
-        odometer, before = self._site.odometer(robot), self._set_out.pop(robot, None)
-        driven = None if odometer is None else odometer.since(before)
-        self._book.note(self._book.news.ended(leg, end, driven))
 
     def stands_at(self, robot: str) -> str | None:
         """The place at which somebody asks a robot; None where none is sent. Raises
@@ -397,12 +309,6 @@ class FleetAtWork:
     def pace(self) -> float | None:
         """Seconds of the site's clock per second; None where it goes as fast as it can."""
         return self._pace
-
-    async def _arrived(self, leg: Leg) -> None:
-        async with self._book.at_once:
-            self.dispatcher.arrived(leg, self.now_s)
-            await self._book.keep()
-        self._book.changed.set()
 
     # --- What people ask ----------------------------------------------------------------------
 

@@ -1,33 +1,21 @@
 """What operators say to a fleet: of ways, and of robots."""
 
-from collections.abc import Callable
-
 from mend.documents.problem import list_names
 from mend.errors import ConflictError, NotFoundError
 from mend.fleet.dispatch.leg import Finding, Found
 from mend.server.access.principal import RESERVED
 from mend.server.fleets.errands import Errands
 from mend.server.fleets.fleet_book import FleetBook
-from mend.server.fleets.leg_execution import LegExecution
+from mend.server.fleets.legs_under_way import LegsUnderWay
 from mend.server.fleets.operator_requests import WayReport
 from mend.server.journal import events as ev
 
 
 class Operators:
-    """Does with one fleet what operators say.
+    """Does with one fleet what operators say."""
 
-    `legs`: how the leg of a robot is carried out, if one is; `sends` has a robot go to a place.
-    """
-
-    def __init__(
-        self,
-        book: FleetBook,
-        errands: Errands,
-        legs: Callable[[str], LegExecution | None],
-        sends: Callable[[str, str, ev.Author | None], None],
-    ) -> None:
-        self._book, self._errands = book, errands
-        self._legs, self._sends = legs, sends
+    def __init__(self, book: FleetBook, errands: Errands, legs: LegsUnderWay) -> None:
+        self._book, self._errands, self._legs = book, errands, legs
 
     async def found(self, way: WayReport, author: ev.Author | None) -> None:
         """A way was found blocked, or open. Raises as `Dispatcher.found`."""
@@ -66,7 +54,7 @@ class Operators:
             if leg is None and dispatcher.fleet.robots[robot].works:
                 at = self._book.met_at(robot)
                 dispatcher.robot_failed(robot, at, reason, self._book.now_s)
-        execution = self._legs(robot)
+        execution = self._legs.executions.get(robot)
         if leg is not None and execution is not None:
             await execution.break_off()
         if errand is not None:
@@ -82,7 +70,7 @@ class Operators:
             self._book.require_robot(robot)
             self._book.places.in_scene(place)
             self._errands.require_free(robot)
-            self._sends(robot, self._book.dispatcher.building.find(place), author)
+            self._errands.send(robot, self._book.dispatcher.building.find(place), author)
 
     async def put_back(self, robot: str, author: ev.Author | None) -> None:
         """A robot works again, from where it stands.
