@@ -106,8 +106,8 @@ class CueModel:
         return rival.log_looks + math.log(self._opening_on(opening_m, self._felt_m(rival, grasp)))
 
     def _felt_m(self, rival: RivalReading, grasp: Grasp) -> float:
-        """A rival's width; the part's own where fingers cannot tell the two."""
-        told_apart = abs(rival.width_m - grasp.width_m) > 2 * self._sd_m
+        """A rival's width; the part's own where neither looks nor fingers tell the two."""
+        told_apart = not rival.alike or abs(rival.width_m - grasp.width_m) > 2 * self._sd_m
         return rival.width_m if told_apart else grasp.width_m
 
     def _opening_on_other(self, opening_m: float, gripper: GripperModel, *, pushed: bool) -> float:

@@ -35,10 +35,14 @@ class Rival:
 
 @dataclass(frozen=True, slots=True)
 class RivalReading:
-    """How a rival fits what is seen: log p(picture | it is held), as `log_density` has it."""
+    """How a rival fits what is seen: log p(picture | it is held), as `log_density` has it.
+
+    `alike`: looks hardly tell it from the part, so that the fingers have to.
+    """
 
     width_m: float
     log_looks: float
+    alike: bool
 
 
 def rivals_of(
@@ -82,8 +86,16 @@ class RivalView:
             if each.alike:
                 looks += self._log_odds_beyond(each.name, each.pieces, pieces)
                 looks -= self._log_odds_beyond(part, pieces, each.pieces)
-            readings.append(RivalReading(each.width_m, looks))
+            else:
+                looks += self._log_odds_of_any(each)
+            readings.append(RivalReading(each.width_m, looks, each.alike))
         return readings
+
+    def _log_odds_of_any(self, rival: Rival) -> float:
+        """Of a rival against any other thing, by what is seen where the rival must be."""
+        region = visible_region(self.image, self.tool, rival.pieces, self.hiding)
+        seen = composition(region, self.segmentation, self.model, rival.name)
+        return 0.0 if seen is None else log_density(seen, "right") - log_density(seen, "other")
 
     def _log_odds_beyond(self, name: str, pieces: Pieces, other: Pieces) -> float:
         """Of a part against nothing, where it must be seen and another never would be."""

@@ -136,7 +136,9 @@ def test_a_rival_that_fits_each_reading_is_believed_however_many_others_there_ar
 ) -> None:
     knob, other = grasp(0.015, 0.024), 0.022
     widths = [other, *(0.040 + 0.002 * each for each in range(rivals - 1))]
-    reading = HandReading(other, True, None, rivals=[RivalReading(each, 0.0) for each in widths])
+    reading = HandReading(
+        other, True, None, rivals=[RivalReading(each, 0.0, alike=True) for each in widths]
+    )
     belief = Belief(rivals)
     for _ in range(12):
         belief.update(CUES.log_likelihoods(reading, knob, GRIPPER))
@@ -144,10 +146,22 @@ def test_a_rival_that_fits_each_reading_is_believed_however_many_others_there_ar
 
 
 def test_rivals_that_are_forgotten_are_something_else() -> None:
-    reading = HandReading(0.03, True, None, rivals=[RivalReading(0.03, 0.0)])
+    reading = HandReading(0.03, True, None, rivals=[RivalReading(0.03, 0.0, alike=True)])
     belief = Belief(1)
     belief.update(CUES.log_likelihoods(reading, grasp(0.015), GRIPPER))
     before = belief.probability
     belief.forget_rivals()
     assert belief.probability == pytest.approx(before)
     assert belief.of(Between.OTHER) > 0.5
+
+
+@pytest.mark.parametrize(("alike", "believed"), [(True, True), (False, False)])
+def test_fingers_tell_what_is_hardly_wider_only_where_its_looks_can_tell_too(
+    alike: bool, believed: bool
+) -> None:
+    wider = grasp(0.030).width_m + 0.002
+    reading = HandReading(wider, True, None, rivals=[RivalReading(wider, 0.0, alike)])
+    belief = Belief(1)
+    for _ in range(12):
+        belief.update(CUES.log_likelihoods(reading, grasp(0.030), GRIPPER))
+    assert (belief.probability > 0.5) is believed
