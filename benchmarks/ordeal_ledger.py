@@ -4,13 +4,11 @@ What is believed of the service is only its journal; where everything was is the
 (`ordeal_world.py`). A finding is a sentence with the site's time.
 """
 
-import json
 import math
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -18,11 +16,11 @@ from typing import Any
 from chaos_ledger import Ledger, Row
 from chaos_witness import Witness
 from dispatch_ledger import leads
+from ordeal_truth import MOMENT_S, SPARE_S, Truth
 
 from mend.dialogue.evidence import Change
 from mend.fleet.requests import LegAction
 from mend.maps.building.building import Building
-from mend.robots.base.basket import FELT_KG, UNSURE_KG
 from mend.robots.base.behaviors.behavior import MEETS_M
 from mend.server.fleets.leg_task import item_of
 from mend.server.fleets.place_names import PlaceNames
@@ -33,130 +31,10 @@ OVER = ("done", "refused", "cancelled", "failed")
 AT_M = MEETS_M + 0.4
 BESIDE_M = 2.3
 WITH_PERSON_M = 3.0
-SPARE_S = 1.0
-MOMENT_S = 0.6
-"""The witness writes something so often at least."""
 BEGINS_S = 60.0
 QUOTE = "'"
 BRINGS = (LegAction.HAND_OVER, LegAction.GIVE, LegAction.BRING_BACK)
 FETCHES = (LegAction.COLLECT, LegAction.TAKE)
-
-
-@dataclass(frozen=True, slots=True)
-class Line:
-    """What the witness wrote at a time of the world's clock."""
-
-    t: float
-    what: str
-    body: dict[str, Any]
-
-
-class Truth:
-    """What really was; `lines`: all that was ever so, `kept`: without what kills undid."""
-
-    def __init__(self, file: Path) -> None:
-        written = file.read_text() if file.exists() else ""
-        read = [json.loads(each) for each in written.splitlines()]
-        self.lines = [Line(each["t"], each["what"], each) for each in read]
-        self.kept: list[Line] = []
-        self.faults: list[str] = []
-        self.lives = 0
-        for line in self.lines:
-            if line.what == "begun":
-                self._begin(line)
-            self.kept.append(line)
-
-    def _begin(self, line: Line) -> None:
-        self.lives += 1
-        if not self.kept:
-            return
-        if line.t > self.kept[-1].t + MOMENT_S:
-            self.faults.append(
-                f"{line.t:.1f} s: a life began after the moment that had been so far"
-            )
-        at_that_moment: list[Any] = []
-        while self.kept and self.kept[-1].t > line.t - 1e-6:
-            last = self.kept.pop()
-            if "items" in last.body and last.t < line.t + 1e-6:
-                at_that_moment.append(last.body["items"])
-        before: Any = next((e.body["items"] for e in reversed(self.kept) if "items" in e.body), {})
-        if line.body["items"] not in [before, *at_that_moment]:
-            self.faults.append(f"{line.t:.1f} s: a kill changed where things are: {line.body}")
-
-    @property
-    def items(self) -> dict[str, list[Any]]:
-        """Where everything is in the end: place, robot, taken, delivered; and its kg."""
-        last = next((e for e in reversed(self.kept) if "items" in e.body), None)
-        return {} if last is None else last.body["items"]
-
-    def baskets_between(
-        self, begun_s: float, ended_s: float, number: int
-    ) -> Iterator[frozenset[str]]:
-        """What was in the basket of a robot in a span of wall time, and just before."""
-        last: frozenset[str] = frozenset()
-        for each in self.kept:
-            if "items" not in each.body or each.body["wall_s"] > ended_s:
-                continue
-            items = each.body["items"].items()
-            now = frozenset(
-                n for n, (_, robot, taken, *_) in items if robot == number and not taken
-            )
-            if each.body["wall_s"] >= begun_s:
-                yield last
-            last = now
-        yield last
-
-    def shut_between(self, begun_s: float, ended_s: float) -> Iterator[list[str]]:
-        """Which doors were shut in a span of wall time, also in what a kill undid."""
-        for each in self.lines:
-            if each.what == "state" and begun_s <= each.body["wall_s"] <= ended_s:
-                yield each.body["shut"]
-
-    def felt_alike_s(self, item: str) -> Iterator[float]:
-        """When its robot offered it, and lost it, or what weighs about as much, to somebody else.
-
-        A load cell does not tell who takes what.
-        """
-        before: dict[str, list[Any]] = {}
-        for line in self.kept:
-            stolen = line.what == "stolen" and line.body["offers"] == item
-            if stolen and _weigh_alike(before[item], before[line.body["item"]]):
-                yield line.t
-            now, offered = line.body.get("items"), before.get(item)
-            if now is None:
-                continue
-            for name, (place, _, _, delivered, _) in now.items():
-                was = before.get(name)
-                if name == item or was is None or offered is None or offered[1] is None:
-                    continue
-                mistaken = was[1] == offered[1] and place is not None and not delivered
-                if mistaken and _weigh_alike(was, offered):
-                    yield line.t
-            before = now
-
-    @cached_property
-    def states(self) -> list[Line]:
-        """Where robots and people were."""
-        return [each for each in self.kept if each.what == "state"]
-
-    def states_between(self, begun_s: float, ended_s: float) -> Iterator[dict[str, Any]]:
-        """Where robots and people were in a span."""
-        for each in self.states:
-            if begun_s - SPARE_S <= each.t <= ended_s + SPARE_S:
-                yield each.body
-
-    def items_between(self, begun_s: float, ended_s: float) -> Iterator[dict[str, list[Any]]]:
-        """Where things were in a span."""
-        current: dict[str, list[Any]] = {}
-        for each in self.kept:
-            if each.t > ended_s + SPARE_S:
-                break
-            if "items" not in each.body:
-                continue
-            if each.t >= begun_s - SPARE_S:
-                yield current
-            current = each.body["items"]
-        yield current
 
 
 @dataclass(frozen=True, slots=True)
@@ -468,10 +346,6 @@ class OrdealLedger:
                 continue
             elif "for a person to take it" not in reason:
                 yield f"{said} ({reason}), and is still in the basket of robot {item[1]}"
-
-
-def _weigh_alike(one: list[Any], other: list[Any]) -> bool:
-    return abs(one[4] - other[4]) < FELT_KG + UNSURE_KG
 
 
 def _something_else_brought(there_was: list[dict[str, list[Any]]], number: int) -> bool:

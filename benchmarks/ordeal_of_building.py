@@ -20,8 +20,9 @@ import ordeal_world
 from chaos_witness import Witness
 from ordeal_happenings import OVER, NothingToDoError, SiteHappenings
 from ordeal_kills import draw_kills, kills_so_far, write_kills
-from ordeal_ledger import OrdealLedger, Setting, Truth
+from ordeal_ledger import OrdealLedger, Setting
 from ordeal_people import People, is_near
+from ordeal_truth import Truth
 from service_process import ServiceProcess
 
 from mend.errors import MendError

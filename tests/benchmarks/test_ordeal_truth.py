@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from ordeal_ledger import Truth
+from ordeal_truth import Truth
 
 
 def written(folder: Path, lines: Iterable[dict[str, Any]]) -> Path:
