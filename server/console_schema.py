@@ -10,7 +10,7 @@ from pydantic import TypeAdapter
 from mend.server.api import helper_messages, speech_messages
 from mend.server.journal.events import AnyEvent
 from mend.server.schemas import DIALECT, TO_HELPERS, Models, asyncapi, members_of, openapi
-from mend.server.transcript import Line
+from mend.server.transcript_line import Line
 
 
 def console() -> dict[str, Any]:

@@ -7,7 +7,9 @@ from pydantic import TypeAdapter
 from mend.server.journal.run_index import IndexedRun, RunIndex
 from mend.server.journal.stored_event import read_event
 from mend.server.journal.subscriptions import Record
-from mend.server.transcript import Line, Tone, Transcript, told_start
+from mend.server.transcript import Transcript
+from mend.server.transcript_line import Line, Tone
+from mend.server.transcript_words import told_start
 
 _RUN = '"run":"'
 _UUID_CHARS = 36

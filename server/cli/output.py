@@ -8,7 +8,8 @@ from rich.text import Text
 
 from mend.server.journal.events import Event
 from mend.server.plain_text import plain
-from mend.server.transcript import Line, Tone, Transcript
+from mend.server.transcript import Transcript
+from mend.server.transcript_line import Line, Tone
 
 STYLES: dict[Tone, str] = {
     Tone.RUN: "bold",

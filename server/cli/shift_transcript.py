@@ -7,7 +7,8 @@ import typer
 
 from mend.fleet.requests import STATUS, RequestStatus
 from mend.server.journal import events as ev
-from mend.server.transcript import Tone, Transcript
+from mend.server.transcript import Transcript
+from mend.server.transcript_line import Tone
 
 _TOLD = (Tone.FAULT, Tone.SAID, Tone.ASKED, Tone.ANSWERED, Tone.DEED, Tone.SETBACK)
 """Of what robots do in their legs only what is said, and why, is told."""

@@ -15,15 +15,9 @@ from mend.server.report.record import Fault, RunRecord
 from mend.server.report.timeline import lay_out_timeline
 from mend.server.report.tree_drawing import draw_tree
 from mend.server.report.tree_state import node_states
-from mend.server.transcript import (
-    SPOKEN,
-    Line,
-    Transcript,
-    grouped,
-    joined,
-    told_missing,
-    why_aborted,
-)
+from mend.server.transcript import Transcript
+from mend.server.transcript_line import SPOKEN, Line, grouped
+from mend.server.transcript_words import joined, told_missing, why_aborted
 
 MAX_CANDIDATES = 8
 """Of each choice, so many candidates are shown."""

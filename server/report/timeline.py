@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, field
 
 from mend.server.report.record import Attempt, Fault, RunRecord
-from mend.server.transcript import deed_text
+from mend.server.transcript_words import deed_text
 
 LABELS_PX = 150
 MARGIN_PX = 16

@@ -2,7 +2,7 @@
 
 from mend.server.journal import events as ev
 from mend.server.runtime.views import RunResult
-from mend.server.transcript import finished_text
+from mend.server.transcript_words import finished_text
 
 Ending = ev.RunFinished | ev.RunFailed | ev.RunAborted
 

@@ -13,7 +13,8 @@ from websockets.asyncio.client import connect
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry
 from mend.server.runtime.requests import RunRequest
-from mend.server.transcript import Line, Tone, Transcript
+from mend.server.transcript import Transcript
+from mend.server.transcript_line import Line, Tone
 
 
 @pytest.fixture

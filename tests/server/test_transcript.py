@@ -12,14 +12,9 @@ from mend.dialogue.script import CloseReason, Help
 from mend.robots.link.messages import Detection
 from mend.server.access.roles import Role
 from mend.server.journal import events as ev
-from mend.server.transcript import (
-    Line,
-    Tone,
-    Transcript,
-    finished_text,
-    grouped,
-    told_missing,
-)
+from mend.server.transcript import Transcript
+from mend.server.transcript_line import Line, Tone, grouped
+from mend.server.transcript_words import finished_text, told_missing
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.resolution import Resolution
 from mend.tasks.scene import Pose
