@@ -37,6 +37,11 @@ basket of another one (`put the mail into my basket`).
 does next after help, after a failed attempt, and if it need not begin anew. `guess_1` to
 `guess_3`: where a lost robot may be (`at 101`), or nothing where it has not as many guesses."""
 
+_AT_HAND_M = 5.0
+"""Whoever stands no farther off is in plain sight,"""
+_ROUNDED_M = 5.0
+"""and how far off others stand is said as roundly as people take it."""
+
 
 def word(text: str, issue: Issue, outlook: Outlook) -> str:
     """Fill in a sentence; a leaf without an object or place is spoken of by its own name."""
@@ -66,7 +71,14 @@ def _put_in(issue: Issue) -> str:
     item = f"the {spoken(issue.item or issue.name)}"
     if issue.held_by is None:
         return f"put {item} into my basket"
-    return f"take {item} out of the basket of {called(issue.held_by)} and put it into mine"
+    there = called(issue.held_by)
+    if issue.away_m is not None and issue.away_m > _AT_HAND_M:
+        there += f", which stands about {_roundly(issue.away_m):.0f} m from here,"
+    return f"take {item} out of the basket of {there} and put it into mine"
+
+
+def _roundly(length_m: float) -> float:
+    return _ROUNDED_M * max(round(length_m / _ROUNDED_M), 1)
 
 
 def sentence(clause: str) -> str:

@@ -65,6 +65,12 @@ class BehaviorNode(StrictModel):
         return self._text("held_by")
 
     @property
+    def away_m(self) -> float | None:
+        """How far from the leaf's place that robot stands, where that is known."""
+        value = self.parameters.get("away_m")
+        return float(value) if isinstance(value, int | float) else None
+
+    @property
     def message(self) -> str | None:
         """What the behavior tells people, if it tells anything."""
         return self._text("message")

@@ -28,7 +28,8 @@ class Issue:
     say; `sensed` how it came to know. `interrupts`: the robot does not go on by itself.
     `guesses`: where it may be if it is lost, likeliest first (`at F1-101`). `item`: what the leaf
     carries for people, `held_by`: in the basket of which robot that is, where it is in one,
-    `message`: what it tells them, and `person`: whom it escorts, if it does.
+    `away_m`: how far off that one stands, `message`: what it tells them, and `person`: whom it
+    escorts, if it does.
     """
 
     kind: str
@@ -46,3 +47,4 @@ class Issue:
     message: str | None = None
     person: str | None = None
     held_by: str | None = None
+    away_m: float | None = None

@@ -117,7 +117,12 @@ class LegExecution:
             await self._wait()
             if self._broken_off:
                 return LegEnd(outcome=LegOutcome.WITHDRAWN, at=self._at())
-        return end if visits else await self._done(LegStage.DO, task_of(leg, place))
+        return end if visits else await self._done(LegStage.DO, task_of(leg, place, self._away_m()))
+
+    def _away_m(self) -> float | None:
+        """How far from its place the robot stands out of whose basket something is to be taken."""
+        where = None if self._leg.held_by is None else self._site.whereabouts(self._leg.held_by)
+        return None if where is None else self._places.away_m(self._leg.place, *where)
 
     async def _wait(self) -> None:
         """Stay until it is time, and as long as somebody wants the robot there."""

@@ -129,8 +129,10 @@ def charging_at(place: str) -> TaskTreeDefinition:
     return _leaf(CHARGE, {"place": place})
 
 
-def task_of(leg: Leg, place: str) -> TaskTreeDefinition:
+def task_of(leg: Leg, place: str, away_m: float | None = None) -> TaskTreeDefinition:
     """The task of a leg; `place` is its place as the scene calls it.
+
+    `away_m`: how far from there the robot stands that has what is to be taken, if it is known.
 
     Raises `WrongInputError` for what no behavior does.
     """
@@ -139,6 +141,8 @@ def task_of(leg: Leg, place: str) -> TaskTreeDefinition:
     parameters = {"place": place, **_parameters(leg.request, leg.booking)}
     if leg.held_by is not None and leg.action is LegAction.TAKE:
         parameters["held_by"] = leg.held_by
+        if away_m is not None:
+            parameters["away_m"] = round(away_m, 1)
     return _leaf(BEHAVIORS[leg.action], parameters)
 
 

@@ -49,6 +49,11 @@ class PlaceNames:
         ]
         return min(free, default=(0.0, None))[1]
 
+    def away_m(self, place: str, x: float, y: float, z: float) -> float | None:
+        """How far a position of the scene is from a place of the same floor; None from others."""
+        full = self._building.find(place)
+        return next((each for each, name in self._away_m(x, y, z) if name == full), None)
+
     def _away_m(self, x: float, y: float, z: float) -> list[tuple[float, str]]:
         """How far each place of the floor is, and what it is called."""
         floor = self._building.floor_at(z)

@@ -248,6 +248,7 @@ def issue_of(raised: ev.IssueRaised) -> Issue:
         message=raised.message,
         person=raised.person,
         held_by=raised.held_by,
+        away_m=raised.away_m,
     )
 
 

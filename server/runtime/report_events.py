@@ -131,6 +131,7 @@ class ReportEvents:
             message=leaf.message,
             person=leaf.person,
             held_by=leaf.held_by,
+            away_m=leaf.away_m,
             execution=execution.id,
             step=body.step,
             interrupts=body.interrupts,

@@ -29,8 +29,6 @@ _AT_DOOR_M = 1.0
 """Who is asked to open a door opens one that a robot stands so near to."""
 _BEFORE_PERSON_M = 1.5
 """Who is at a place reaches the basket of a robot that stands so near to it."""
-_AT_HAND_M = 10.0
-"""People go so far for what is in the basket of a robot that does not get on."""
 _ASKED_M = 2.5
 """Who stands so near to a robot that stands is meant by what it asks."""
 _HELD_OPEN_S = 30.0
@@ -210,10 +208,9 @@ class Interveners:
         return math.hypot(robot.at.x - at.x, robot.at.y - at.y) <= _BEFORE_PERSON_M
 
     def _stands_at_hand(self, number: int, other: int) -> bool:
-        """Whether another robot stands so near that people bring a robot what that one has."""
-        here, there = self.crowd.robots[number].at, self.crowd.robots[other]
-        near = math.hypot(here.x - there.at.x, here.y - there.at.y) <= _AT_HAND_M
-        return near and here.floor == there.at.floor and not there.moving
+        """Whether another robot stands where people bring a robot from what that one has."""
+        there = self.crowd.robots[other]
+        return self.crowd.robots[number].at.floor == there.at.floor and not there.moving
 
     def _send_people(self) -> str:
         """Somebody tells those to come for whom robots stand and wait."""

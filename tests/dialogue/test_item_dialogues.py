@@ -28,6 +28,7 @@ def conversation(
     message: str | None = None,
     outlook: Outlook | None = None,
     held_by: str | None = None,
+    away_m: float | None = None,
 ) -> Conversation:
     issue = Issue(
         kind=kind,
@@ -41,6 +42,7 @@ def conversation(
         item="post_bag",
         message=message,
         held_by=held_by,
+        away_m=away_m,
     )
     return Conversation(SCRIPTS[kind], issue, outlook or Outlook())
 
@@ -76,6 +78,13 @@ def test_what_is_in_the_basket_of_another_robot_is_asked_for_there() -> None:
     assert "take the post bag out of the basket of robot 2 and put it into mine" in ask.yes_effect
     of_a_site = conversation("item_not_given", held_by="robot2-0afba7d8")
     assert "out of the basket of robot2 and put" in asked(list(of_a_site.open())).text
+    near = conversation("item_not_given", held_by="robot2", away_m=4.0)
+    assert "out of the basket of robot2 and put" in asked(list(near.open())).text
+    far = conversation("item_not_given", held_by="robot2", away_m=33.4)
+    assert (
+        "take the post bag out of the basket of robot2, which stands about 35 m from here, and put "
+        "it into mine"
+    ) in asked(list(far.open())).text
     assert "I wait until I feel something new in my basket." in said(list(talk.answer("yes")))
 
 

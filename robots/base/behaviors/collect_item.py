@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import ClassVar
 
+from pydantic import Field
+
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.behaviors.behavior import (
     MEETS_M,
@@ -24,9 +26,13 @@ class ItemParameters(StrictModel):
 
 
 class CollectParameters(ItemParameters):
-    """`held_by`: the robot in whose basket it is, where nobody at the place has it."""
+    """`held_by`: the robot in whose basket it is, where nobody at the place has it.
+
+    `away_m`: how far from the place that robot stands, for people to find it.
+    """
 
     held_by: Name | None = None
+    away_m: float | None = Field(default=None, ge=0.0)
 
 
 class CollectItem(BaseBehavior):

@@ -64,8 +64,8 @@ class IssueRaised(NodeEvent):
 
     `last_seen`: where the last look before it saw the object (base frame, metres). `outlook`: which
     attempt this is, of how many, and what follows if it fails. `item`: what the leaf carries for
-    people, `held_by`: in the basket of which robot that is, where it is in one, `message`: what it
-    tells them, and `person`: whom it escorts, if it does.
+    people, `held_by`: in the basket of which robot that is, where it is in one, `away_m`: how far
+    off that one stands, `message`: what it tells them, and `person`: whom it escorts, if it does.
     """
 
     type: Literal["issue_raised"] = "issue_raised"
@@ -84,6 +84,7 @@ class IssueRaised(NodeEvent):
     message: str | None = None
     person: str | None = None
     held_by: str | None = None
+    away_m: float | None = None
 
 
 class ClipPicture(EventModel):

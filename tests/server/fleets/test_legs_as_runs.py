@@ -453,6 +453,7 @@ async def test_who_fetches_something_says_in_whose_basket_it_is_and_its_robot_is
     async with working("a", "e") as work:
         fetching = await _with_tea_aboard_r0_fails(work)
         assert fetching.parameters["held_by"] == "r0"
+        assert fetching.parameters["away_m"] == 10.0
         assert work.site.failed == ["r0"], "the others know what they meet there"
         assert work.site.taken == {}
         fetching.ended.set_result(("finished", True))

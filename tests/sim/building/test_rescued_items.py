@@ -33,6 +33,18 @@ def rescued() -> BuildingBench:
     return bench
 
 
+def test_people_bring_it_from_wherever_on_the_floor_that_robot_stands() -> None:
+    bench = BuildingBench(robots=2)
+    collects(bench, "robot1")
+    first, here = bench.world.robots[0], bench.scene.places[HERE].pose
+    poses = [each.pose for each in bench.scene.places.values()]
+    far = max(poses, key=lambda each: math.hypot(each.x - here.x, each.y - here.y))
+    assert math.hypot(far.x - here.x, far.y - here.y) > 10.0
+    first.stand(FloorPose(first.at.floor, far.x, far.y, 0.0))
+    collects(bench, "robot2", held_by="robot1")
+    assert bench.world.goods.items["mail"].robot == 1
+
+
 def test_a_robot_that_is_told_misses_nothing_when_it_works_again() -> None:
     bench = rescued()
     bench.send("robot1", NoteTaken(items=["mail"]))
