@@ -2,10 +2,11 @@
 
 import math
 
-from building_bench import BuildingBench
+from building_bench import BuildingBench, made_up
 
 from mend.robots.link.messages import Finished, IssueDetected, NoteTaken, Resume
 from mend.sim.building.floor_pose import FloorPose
+from mend.sim.building.scene import scene_of
 from mend.tasks.intervention import Act, Intervention
 
 HERE = "F1-101"
@@ -34,7 +35,7 @@ def rescued() -> BuildingBench:
 
 
 def test_people_bring_it_from_wherever_on_the_floor_that_robot_stands() -> None:
-    bench = BuildingBench(robots=2)
+    bench = BuildingBench(scene=scene_of(made_up(rooms=12), "office", 2), robots=2)
     collects(bench, "robot1")
     first, here = bench.world.robots[0], bench.scene.places[HERE].pose
     poses = [each.pose for each in bench.scene.places.values()]
