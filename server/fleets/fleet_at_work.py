@@ -272,13 +272,13 @@ class FleetAtWork:
         if charges and self._charging.may_leave(robot, poses.battery, poses.time):
             self._book.changed.set()
 
-    def _have_met(self, decided: Yielding, place: str | None) -> None:
+    async def _have_met(self, decided: Yielding, place: str | None) -> None:
         """A robot makes way for another one; `place`: where it is to go for that, if it rests."""
         told = f"met {decided.other} where they cannot pass each other, and is to make way"
-        self._book.note(self._book.news.told(told, finder=decided.robot))
-        if place is not None:
-            self._asked_aside[decided.robot] = place
-        self._book.changed.set()
+        async with self._book.told():
+            self._book.note(self._book.news.told(told, finder=decided.robot))
+            if place is not None:
+                self._asked_aside[decided.robot] = place
 
     def _occupation(self, robot: str) -> Occupation:
         leg, errand = self._legs.executions.get(robot), self._errands.going.get(robot)

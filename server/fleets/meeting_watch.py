@@ -2,7 +2,7 @@
 
 import asyncio
 import math
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 
 from mend.fleet.right_of_way.right_of_way import Yielding
 from mend.robots.link.messages import MakeWay, Poses
@@ -14,17 +14,17 @@ EVERY_S = 0.5
 
 
 class MeetingWatch:
-    """Has robots that drive `told` what to do, and `met` hear of it.
+    """Has `met` hear of who makes way, and then robots that drive `told` what to do.
 
-    The latter also of robots that rest, with the place where they are to go. `now_s`: the site's
-    clock, as far as robots tell of it.
+    Of robots that rest with the place where they are to go. `now_s`: the site's clock, as far as
+    robots tell of it.
     """
 
     def __init__(
         self,
         meetings: Meetings,
         told: Callable[[str, MakeWay], None],
-        met: Callable[[Yielding, str | None], None],
+        met: Callable[[Yielding, str | None], Awaitable[None]],
         now_s: Callable[[], float],
     ) -> None:
         self._meetings, self._told, self._met, self._now_s = meetings, told, met, now_s
@@ -52,8 +52,10 @@ class MeetingWatch:
         if decided is None:
             return
         if not self._meetings.rests(decided.robot):
-            for robot, told in self._meetings.told(decided, now_s):
+            # By the clocks of robots as they are now: until then time passes.
+            all_told = self._meetings.told(decided, now_s)
+            await self._met(decided, None)
+            for robot, told in all_told:
                 self._told(robot, told)
-            self._met(decided, None)
         elif (place := self._meetings.place_to_rest(decided, standings)) is not None:
-            self._met(decided, place)
+            await self._met(decided, place)
