@@ -82,7 +82,7 @@ async def _answer_no(service: Service, run: UUID, answers: int) -> list[float]:
                 dialogue, prompt = asked
                 asked = None
                 answered_at = time.perf_counter()
-                await service.runtime.answer(dialogue, prompt, "no", "benchmark")
+                await service.runtime.dialogues.answer(dialogue, prompt, "no", "benchmark")
     return waits
 
 

@@ -67,7 +67,7 @@ async def list_dialogues(
     offset: Offset = 0,
 ) -> list[DialogueView]:
     """Dialogues, all or those of one status."""
-    return await services.runs.dialogues(status, limit, offset)
+    return await services.runs.dialogues.page(status, limit, offset)
 
 
 @router.get(
@@ -75,7 +75,7 @@ async def list_dialogues(
 )
 async def get_dialogue(dialogue: DialogueId, services: WithServices) -> DialogueView:
     """One dialogue with its latest prompt."""
-    return await services.runs.dialogue(dialogue)
+    return await services.runs.dialogues.view(dialogue)
 
 
 @router.post(
@@ -90,7 +90,7 @@ async def answer_prompt(
     caller: WithCaller,
 ) -> Answered:
     """Answer a prompt. The first answer wins; a later one gets 409 with `answered_by`."""
-    return await services.runs.answer(
+    return await services.runs.dialogues.answer(
         dialogue, body.prompt, body.answer, helper_of(caller, body.helper), caller.author
     )
 
@@ -103,7 +103,7 @@ async def claim_dialogue(
     caller: WithCaller,
 ) -> DialogueView:
     """Show the other helpers that you are on it; the claim ends with its lease."""
-    return await services.runs.claim(
+    return await services.runs.dialogues.claim(
         dialogue, helper_of(caller, body.helper), take_over=body.take_over, author=caller.author
     )
 
@@ -116,7 +116,7 @@ async def extend_deadline(
     caller: WithCaller,
 ) -> DeadlineExtended:
     """Move the open question's deadline by its original length, at most ten times."""
-    return await services.runs.extend(
+    return await services.runs.dialogues.extend(
         dialogue, body.prompt, helper_of(caller, body.helper), caller.author
     )
 
@@ -129,4 +129,6 @@ async def release_dialogue(
     caller: WithCaller,
 ) -> DialogueView:
     """Give up your claim."""
-    return await services.runs.release(dialogue, helper_of(caller, body.helper), caller.author)
+    return await services.runs.dialogues.release(
+        dialogue, helper_of(caller, body.helper), caller.author
+    )

@@ -48,7 +48,7 @@ async def _view_of(event: ev.Event, services: Services) -> tuple[int, BaseModel,
         case ev.DeadlineExtended():
             return 200, event, None
         case ev.Claimed(dialogue=dialogue) | ev.Released(dialogue=dialogue):
-            return 200, await services.runs.dialogue(dialogue), None
+            return 200, await services.runs.dialogues.view(dialogue), None
     raise _lost()
 
 

@@ -153,17 +153,19 @@ class HelperSocket(HelperConnection[EventsQuery]):
         runs = self._parts.runs
         match message:
             case Answer():
-                done: BaseModel = await runs.answer(
+                done: BaseModel = await runs.dialogues.answer(
                     message.dialogue, message.prompt, message.answer, helper, self._author
                 )
             case Claim():
-                done = await runs.claim(
+                done = await runs.dialogues.claim(
                     message.dialogue, helper, take_over=message.take_over, author=self._author
                 )
             case Release():
-                done = await runs.release(message.dialogue, helper, self._author)
+                done = await runs.dialogues.release(message.dialogue, helper, self._author)
             case Extend():
-                done = await runs.extend(message.dialogue, message.prompt, helper, self._author)
+                done = await runs.dialogues.extend(
+                    message.dialogue, message.prompt, helper, self._author
+                )
             case Auth() | Ping():
                 return {}
         return done.model_dump(mode="json")

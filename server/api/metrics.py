@@ -40,7 +40,7 @@ class ServiceCollector(Collector):
         yield GaugeMetricFamily(
             "mend_open_dialogues",
             "Open dialogues.",
-            value=self._services.runs.count_open_dialogues(),
+            value=self._services.runs.dialogues.count_open(),
         )
         connected = sum(robot.connected for robot in self._services.runs.robots())
         yield GaugeMetricFamily("mend_robots_connected", "Robots connected.", value=connected)

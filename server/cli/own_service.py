@@ -90,7 +90,7 @@ class OwnService:
     async def answer(
         self, dialogue: UUID, prompt: UUID, answer: Literal["yes", "no"], helper: str
     ) -> object:
-        return await self._runtime.answer(dialogue, prompt, answer, helper)
+        return await self._runtime.dialogues.answer(dialogue, prompt, answer, helper)
 
     async def abort(self, run: UUID) -> None:
         with suppress(ConflictError):

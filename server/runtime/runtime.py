@@ -6,8 +6,7 @@ from array import array
 from collections.abc import Awaitable, Callable, Mapping
 from datetime import datetime
 from functools import partial
-from itertools import islice
-from typing import Literal, cast
+from typing import cast
 from uuid import UUID
 
 import numpy as np
@@ -16,7 +15,7 @@ from mend.dialogue.script import Script
 from mend.errors import ConflictError, NotFoundError, UnreadableError, WrongInputError
 from mend.server.dialogues.answers import answer_source
 from mend.server.dialogues.escalation import EscalationPolicy
-from mend.server.errors import BusyError, LostRaceError
+from mend.server.errors import BusyError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal
 from mend.server.journal.run_index import UNREADABLE, IndexedRun, RunPage
@@ -34,6 +33,7 @@ from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.robot_owners import RobotOwners
 from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run import Run
+from mend.server.runtime.run_dialogues import RunDialogues
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.run_states import RunStates
 from mend.server.runtime.run_views import (
@@ -44,7 +44,6 @@ from mend.server.runtime.run_views import (
     summary_of_indexed,
 )
 from mend.server.runtime.views import (
-    DialogueView,
     LeafSaid,
     RobotView,
     RunStatus,
@@ -95,6 +94,7 @@ class Runtime:
         self._writing_json = asyncio.Lock()
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
         self._owners = RobotOwners(robots)
+        self.dialogues = RunDialogues(self._states, self._running)
         self._closing = False
         self._new_runs = NewRuns(preparation, worlds, utc_now, settings.limits)
         journal.trouble.watch(self._journal_troubled)
@@ -409,91 +409,6 @@ class Runtime:
             if proxy.hello is not None and camera in proxy.hello.cameras:
                 return await self._robots.take_picture(robot, camera)
         raise NotFoundError(f"no robot of this run has a camera '{camera}'")
-
-    # --- Dialogues ----------------------------------------------------------------------------
-
-    async def dialogues(
-        self, status: Literal["open", "closed"] | None, limit: int, offset: int
-    ) -> list[DialogueView]:
-        """A page of dialogues, oldest first; without those of runs that cannot be read."""
-        if status == "open":
-            # Whoever hears of an event finds it here already; the index is a moment ahead of that.
-            opened = self._states.open_dialogues()
-            return [dialogue_view(each) for each in islice(opened, offset, offset + limit)]
-        page = await self._states.page_of_dialogues(status, limit, offset)
-        views = [dialogue_view(each) for each in page]
-        return [each for each in views if status is None or each.status == status]
-
-    def count_open_dialogues(self) -> int:
-        """How many dialogues are open."""
-        return sum(1 for _ in self._states.open_dialogues())
-
-    async def dialogue(self, dialogue: UUID) -> DialogueView:
-        """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
-        return dialogue_view(await self._states.find_dialogue(dialogue))
-
-    async def answer(
-        self,
-        dialogue: UUID,
-        prompt: UUID,
-        answer: Literal["yes", "no"],
-        helper: str,
-        author: ev.Author | None = None,
-    ) -> ev.Answered:
-        """Answer a prompt: the first answer wins.
-
-        Raises `NotFoundError`, `LostRaceError` or `ConflictError`.
-        """
-        found = await self._states.find_dialogue(dialogue)
-        try:
-            run = await self._running(found.opened.run)
-            proxy = run.proxies[found.opened.robot]
-            answered = await run.request(
-                lambda: run.dialogues.answer(found, prompt, answer, helper, proxy, author)
-            )
-        except ConflictError:
-            # Who was first is told also where that answer has ended the run.
-            if prompt in found.answers:
-                raise LostRaceError(prompt, found.answers[prompt].helper) from None
-            raise
-        return cast(ev.Answered, answered)
-
-    async def extend(
-        self, dialogue: UUID, prompt: UUID, helper: str, author: ev.Author | None = None
-    ) -> ev.DeadlineExtended:
-        """Give the open question more time. Raises `NotFoundError` or `ConflictError`."""
-        found = await self._states.find_dialogue(dialogue)
-        run = await self._running(found.opened.run)
-        extended = await run.request(lambda: run.dialogues.extend(found, prompt, helper, author))
-        return cast(ev.DeadlineExtended, extended)
-
-    async def claim(
-        self,
-        dialogue: UUID,
-        helper: str,
-        *,
-        take_over: bool = False,
-        author: ev.Author | None = None,
-    ) -> DialogueView:
-        """Show the others that a helper is on it.
-
-        Raises `ConflictError` while another is, unless it is taken over from them.
-        """
-        found = await self._states.find_dialogue(dialogue)
-        run = await self._running(found.opened.run)
-        await run.request(
-            lambda: run.claims.claim(found, helper, take_over=take_over, author=author)
-        )
-        return dialogue_view(found)
-
-    async def release(
-        self, dialogue: UUID, helper: str, author: ev.Author | None = None
-    ) -> DialogueView:
-        """Give up a claim. Raises `ConflictError` without one."""
-        found = await self._states.find_dialogue(dialogue)
-        run = await self._running(found.opened.run)
-        await run.request(lambda: run.claims.release(found, helper, author))
-        return dialogue_view(found)
 
     # --- Robots -------------------------------------------------------------------------------
 

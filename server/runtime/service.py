@@ -19,11 +19,67 @@ from mend.server.runtime.views import (
 from mend.tasks.intervention import Intervention
 
 
-class RunService(Protocol):
-    """Runs, dialogues and robots. Every method raises the errors of `server.errors`.
+class DialogueService(Protocol):
+    """The dialogues of all runs. Every method raises the errors of `server.errors`.
 
     `author` is who asks for it; None for what this process does by itself.
     """
+
+    async def page(
+        self, status: Literal["open", "closed"] | None, limit: int, offset: int
+    ) -> list[DialogueView]:
+        """A page of dialogues, oldest first."""
+        ...
+
+    def count_open(self) -> int:
+        """How many dialogues are open."""
+        ...
+
+    async def view(self, dialogue: UUID) -> DialogueView:
+        """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
+        ...
+
+    async def answer(
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        answer: Literal["yes", "no"],
+        helper: str,
+        author: Author | None = None,
+    ) -> Answered:
+        """Answer a prompt: the first answer wins. Raises `LostRaceError`, `ConflictError`."""
+        ...
+
+    async def extend(
+        self, dialogue: UUID, prompt: UUID, helper: str, author: Author | None = None
+    ) -> DeadlineExtended:
+        """Move the open question's deadline by its original length. Raises `ConflictError`."""
+        ...
+
+    async def claim(
+        self,
+        dialogue: UUID,
+        helper: str,
+        *,
+        take_over: bool = False,
+        author: Author | None = None,
+    ) -> DialogueView: ...
+
+    async def release(
+        self, dialogue: UUID, helper: str, author: Author | None = None
+    ) -> DialogueView: ...
+
+
+class RunService(Protocol):
+    """Runs and robots. Every method raises the errors of `server.errors`.
+
+    `author` is who asks for it; None for what this process does by itself.
+    """
+
+    @property
+    def dialogues(self) -> DialogueService:
+        """What robots ask in these runs."""
+        ...
 
     async def start_run(self, request: RunRequest, author: Author | None = None) -> RunSummary:
         """Begin a run. Raises `NotFoundError` (tree, scenario, robot), `WrongInputError`."""
@@ -80,50 +136,6 @@ class RunService(Protocol):
     async def picture(self, run: UUID, camera: str) -> bytes:
         """A camera's picture now, as JPEG."""
         ...
-
-    async def dialogues(
-        self, status: Literal["open", "closed"] | None, limit: int, offset: int
-    ) -> list[DialogueView]:
-        """A page of dialogues, oldest first."""
-        ...
-
-    def count_open_dialogues(self) -> int:
-        """How many dialogues are open."""
-        ...
-
-    async def dialogue(self, dialogue: UUID) -> DialogueView:
-        """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
-        ...
-
-    async def answer(
-        self,
-        dialogue: UUID,
-        prompt: UUID,
-        answer: Literal["yes", "no"],
-        helper: str,
-        author: Author | None = None,
-    ) -> Answered:
-        """Answer a prompt: the first answer wins. Raises `LostRaceError`, `ConflictError`."""
-        ...
-
-    async def extend(
-        self, dialogue: UUID, prompt: UUID, helper: str, author: Author | None = None
-    ) -> DeadlineExtended:
-        """Move the open question's deadline by its original length. Raises `ConflictError`."""
-        ...
-
-    async def claim(
-        self,
-        dialogue: UUID,
-        helper: str,
-        *,
-        take_over: bool = False,
-        author: Author | None = None,
-    ) -> DialogueView: ...
-
-    async def release(
-        self, dialogue: UUID, helper: str, author: Author | None = None
-    ) -> DialogueView: ...
 
     def robots(self) -> list[RobotView]: ...
 

@@ -25,7 +25,7 @@ async def find_prompt(
     runs: RunService, journal: Journal, dialogue: UUID, prompt: UUID
 ) -> PromptView | Prompt:
     """A prompt of a dialogue, open or long over. Raises `NotFoundError`."""
-    view = await runs.dialogue(dialogue)
+    view = await runs.dialogues.view(dialogue)
     if view.prompt is not None and view.prompt.prompt == prompt:
         return view.prompt
     async for event in _events_of(journal, view.run, dialogue):
@@ -52,7 +52,7 @@ async def _events_of(journal: Journal, run: UUID, dialogue: UUID) -> AsyncIterat
 
 async def open_question(runs: RunService, dialogue: UUID, prompt: UUID) -> PromptView:
     """The open question of a dialogue. Raises `NotFoundError`, `ConflictError` if it is another."""
-    view = await runs.dialogue(dialogue)
+    view = await runs.dialogues.view(dialogue)
     if view.status == "closed" or view.awaiting != "answer" or view.prompt is None:
         raise ConflictError("this dialogue waits for no answer")
     if view.prompt.prompt != prompt:

@@ -94,14 +94,14 @@ async def _answer(
         await asyncio.sleep(0)
     try:
         if claims:
-            await service.runtime.claim(dialogue, helper, take_over=rng.random() < 0.5)
+            await service.runtime.dialogues.claim(dialogue, helper, take_over=rng.random() < 0.5)
         if extends:
-            await service.runtime.extend(dialogue, prompt, helper)
+            await service.runtime.dialogues.extend(dialogue, prompt, helper)
     except ConflictError:
         # Another has the claim, or has answered: neither keeps anybody from trying.
         pass
     try:
-        answered = await service.runtime.answer(dialogue, prompt, answer, helper)
+        answered = await service.runtime.dialogues.answer(dialogue, prompt, answer, helper)
     except LostRaceError as error:
         findings.refused += 1
         findings.told_the_winner += error.answered_by != helper

@@ -287,16 +287,20 @@ class FakeRuns:
         )
         return view
 
-    async def dialogues(
+    @property
+    def dialogues(self) -> "FakeRuns":
+        return self
+
+    async def page(
         self, status: Literal["open", "closed"] | None, limit: int, offset: int
     ) -> list[DialogueView]:
         listed = [each for each in self._dialogues.values() if status in (None, each.status)]
         return listed[offset : offset + limit]
 
-    def count_open_dialogues(self) -> int:
+    def count_open(self) -> int:
         return sum(each.status == "open" for each in self._dialogues.values())
 
-    async def dialogue(self, dialogue: UUID) -> DialogueView:
+    async def view(self, dialogue: UUID) -> DialogueView:
         return self.dialogue_now(dialogue)
 
     def dialogue_now(self, dialogue: UUID) -> DialogueView:

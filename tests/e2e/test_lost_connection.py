@@ -29,7 +29,7 @@ async def test_what_happened_meanwhile_is_there_afterwards(stage: Stage) -> None
     await expect(page.get_by_text("No connection to the service.")).to_be_visible()
     prompt = stage.runs.dialogue_now(dialogue).prompt
     assert prompt is not None
-    await stage.runs.answer(dialogue, prompt.prompt, "no", "bob")
+    await stage.runs.dialogues.answer(dialogue, prompt.prompt, "no", "bob")
     await page.context.set_offline(False)
     heading = page.get_by_role("heading", name="Will you place the yellow bar")
     await expect(heading).to_be_visible(timeout=60_000)

@@ -88,7 +88,7 @@ async def test_held_answer_is_dropped_when_somebody_else_answers(stage: Stage) -
     await expect(page.get_by_role("button", name="Undo")).to_be_visible()
     prompt = stage.runs.dialogue_now(dialogue).prompt
     assert prompt is not None
-    await stage.runs.answer(dialogue, prompt.prompt, "yes", "bob")
+    await stage.runs.dialogues.answer(dialogue, prompt.prompt, "yes", "bob")
     await expect(page.get_by_text("Your NO was not sent: bob answered first.")).to_be_visible()
     await page.clock.fast_forward(10_000)
     await expect(page.get_by_text("The robot watches for the yellow bar")).to_be_visible()

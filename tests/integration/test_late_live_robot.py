@@ -77,7 +77,7 @@ def _json(**message: Any) -> str:
 
 
 async def _question(service: LiveService) -> DialogueView:
-    while not (found := await service.runtime.dialogues("open", 10, 0)) or not found[0].prompt:  # noqa: ASYNC110
+    while not (found := await service.runtime.dialogues.page("open", 10, 0)) or not found[0].prompt:  # noqa: ASYNC110
         await asyncio.sleep(0.01)
     return found[0]
 
@@ -100,7 +100,7 @@ async def test_who_has_promised_help_can_still_pause_and_abort(
         run = await service.runtime.start_run(RunRequest(tree="one", world="live", robots=["arm"]))
         asked = await _question(service)
         assert asked.prompt is not None
-        await service.runtime.answer(asked.dialogue, asked.prompt.prompt, "yes", "ben")
+        await service.runtime.dialogues.answer(asked.dialogue, asked.prompt.prompt, "yes", "ben")
         robot.in_time.set()
         assert (await service.runtime.pause(run.id)).status is RunStatus.PAUSED
         await service.runtime.resume(run.id)

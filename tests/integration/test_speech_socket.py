@@ -145,7 +145,7 @@ async def test_it_ends_when_somebody_else_answers(
     assert question.prompt is not None
     async with microphone(service) as socket:
         await exchange(socket, listen(question))
-        await service.runs.answer(question.dialogue, question.prompt.prompt, "yes", "ben")
+        await service.runs.dialogues.answer(question.dialogue, question.prompt.prompt, "yes", "ben")
         assert await receive(socket) == {"type": "ended", "reason": "answered"}
         assert (await exchange(socket, '{"type": "spoken"}'))["status"] == 409
         assert (await exchange(socket, listen(question)))["status"] == 409

@@ -98,7 +98,7 @@ def of_dialogue(what: str, event: type[ev.Event], **more: Any) -> Ask:
         view = await served.service.runs.raise_issue(await served.run())
         assert view.prompt is not None
         if what == "release":
-            await served.service.runs.claim(view.dialogue, "anna")
+            await served.service.runs.dialogues.claim(view.dialogue, "anna")
         body = {"helper": "anna", **more}
         if what in ("answers", "extend"):
             body["prompt"] = str(view.prompt.prompt)

@@ -241,7 +241,7 @@ def test_a_service_on_flipped_bits_starts_or_says_why_not(
     async def look_at_everything() -> None:
         async with pretend_service(ONE_PART, journal=path) as service:
             await service.runtime.snapshot(None)
-            await service.runtime.dialogues(None, 100, 0)
+            await service.runtime.dialogues.page(None, 100, 0)
             for listed in await service.runtime.runs(RunPage()):
                 with suppress(UnreadableError, NotFoundError):
                     await service.runtime.run(listed.id)

@@ -28,7 +28,7 @@ async def open_question(service: PretendService) -> DialogueView:
 
 async def first_question(service: PretendService) -> DialogueView:
     async with asyncio.timeout(60):
-        while not (waiting := await service.runtime.dialogues("open", 100, 0)):  # noqa: ASYNC110
+        while not (waiting := await service.runtime.dialogues.page("open", 100, 0)):  # noqa: ASYNC110
             await asyncio.sleep(0)
     return waiting[0]
 
@@ -64,13 +64,13 @@ async def test_of_helpers_who_answer_at_once_exactly_one_wins(seed: int) -> None
 
 async def test_a_claim_is_taken_over_from_another_helper(service: PretendService) -> None:
     dialogue = (await open_question(service)).dialogue
-    await service.runtime.claim(dialogue, "ann")
+    await service.runtime.dialogues.claim(dialogue, "ann")
     with pytest.raises(ConflictError, match="ann"):
-        await service.runtime.claim(dialogue, "bob")
-    taken = await service.runtime.claim(dialogue, "bob", take_over=True)
+        await service.runtime.dialogues.claim(dialogue, "bob")
+    taken = await service.runtime.dialogues.claim(dialogue, "bob", take_over=True)
     assert taken.claimed_by == "bob"
     with pytest.raises(ConflictError, match="bob"):
-        await service.runtime.claim(dialogue, "ann")
+        await service.runtime.dialogues.claim(dialogue, "ann")
     events = await service.journal.read(0, 1000)
     told = [
         (type(each), each.helper) for each in events if isinstance(each, ev.Claimed | ev.Released)
@@ -85,23 +85,25 @@ async def test_nobody_fills_the_journal_with_claims(
     question = await open_question(service)
     for _ in range(2):
         for helper in ("ann", "bob"):
-            await service.runtime.claim(question.dialogue, helper, take_over=True)
-    await service.runtime.claim(question.dialogue, "bob")
+            await service.runtime.dialogues.claim(question.dialogue, helper, take_over=True)
+    await service.runtime.dialogues.claim(question.dialogue, "bob")
     head = service.journal.head
     for take_over in (False, True):
         with pytest.raises(ConflictError, match="can be answered, not claimed") as refused:
-            await service.runtime.claim(question.dialogue, "bob", take_over=take_over)
+            await service.runtime.dialogues.claim(question.dialogue, "bob", take_over=take_over)
         assert refused.value.limit == "claims"
     assert service.journal.head == head
-    await service.runtime.answer(question.dialogue, prompt_in(question).prompt, "yes", "ann")
+    await service.runtime.dialogues.answer(
+        question.dialogue, prompt_in(question).prompt, "yes", "ann"
+    )
 
 
 async def test_taking_over_ones_own_or_nobodys_claim_only_renews_it(
     service: PretendService,
 ) -> None:
     dialogue = (await open_question(service)).dialogue
-    first = await service.runtime.claim(dialogue, "ann", take_over=True)
-    again = await service.runtime.claim(dialogue, "ann", take_over=True)
+    first = await service.runtime.dialogues.claim(dialogue, "ann", take_over=True)
+    again = await service.runtime.dialogues.claim(dialogue, "ann", take_over=True)
     assert first.claimed_until is not None
     assert again.claimed_until is not None
     assert again.claimed_until >= first.claimed_until
@@ -111,9 +113,11 @@ async def test_taking_over_ones_own_or_nobodys_claim_only_renews_it(
 
 async def test_a_claim_that_was_taken_over_never_blocks_an_answer(service: PretendService) -> None:
     view = await open_question(service)
-    await service.runtime.claim(view.dialogue, "ann")
-    await service.runtime.claim(view.dialogue, "bob", take_over=True)
-    answered = await service.runtime.answer(view.dialogue, prompt_in(view).prompt, "no", "cem")
+    await service.runtime.dialogues.claim(view.dialogue, "ann")
+    await service.runtime.dialogues.claim(view.dialogue, "bob", take_over=True)
+    answered = await service.runtime.dialogues.answer(
+        view.dialogue, prompt_in(view).prompt, "no", "cem"
+    )
     assert answered.helper == "cem"
 
 
@@ -129,10 +133,10 @@ async def test_more_time_moves_the_deadline_by_its_original_length(
     assert before.within_s == pytest.approx(60.0)
     assert before.extensions_left == 10
     for number in (1, 2):
-        extended = await service.runtime.extend(view.dialogue, before.prompt, "ann")
+        extended = await service.runtime.dialogues.extend(view.dialogue, before.prompt, "ann")
         assert extended.deadline == pytest.approx(before.deadline + 60.0 * number)
         assert extended.helper == "ann"
-        after = prompt_in(await service.runtime.dialogue(view.dialogue))
+        after = prompt_in(await service.runtime.dialogues.view(view.dialogue))
         assert after.deadline == extended.deadline
         assert after.extensions_left == extended.extensions_left == 10 - number
         assert after.prompt == before.prompt
@@ -142,10 +146,10 @@ async def test_more_time_moves_the_deadline_by_its_original_length(
 async def test_more_time_is_given_ten_times_and_no_more(service: PretendService) -> None:
     view = await open_question(service)
     for _ in range(10):
-        await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "ann")
+        await service.runtime.dialogues.extend(view.dialogue, prompt_in(view).prompt, "ann")
     head = service.journal.head
     with pytest.raises(ConflictError, match="10 times") as refused:
-        await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "bob")
+        await service.runtime.dialogues.extend(view.dialogue, prompt_in(view).prompt, "bob")
     assert refused.value.limit == "extensions"
     assert service.journal.head == head
 
@@ -153,22 +157,24 @@ async def test_more_time_is_given_ten_times_and_no_more(service: PretendService)
 async def test_the_next_question_of_a_dialogue_has_its_own_time(service: PretendService) -> None:
     view = await open_question(service)
     for _ in range(10):
-        await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "ann")
-    await service.runtime.answer(view.dialogue, prompt_in(view).prompt, "no", "ann")
-    second = prompt_in(await service.runtime.dialogue(view.dialogue))
+        await service.runtime.dialogues.extend(view.dialogue, prompt_in(view).prompt, "ann")
+    await service.runtime.dialogues.answer(view.dialogue, prompt_in(view).prompt, "no", "ann")
+    second = prompt_in(await service.runtime.dialogues.view(view.dialogue))
     assert second.prompt != prompt_in(view).prompt
     assert second.extensions_left == 10
     with pytest.raises(ConflictError):
-        await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "ann")
+        await service.runtime.dialogues.extend(view.dialogue, prompt_in(view).prompt, "ann")
     with pytest.raises(NotFoundError):
-        await service.runtime.extend(view.dialogue, view.dialogue, "ann")
+        await service.runtime.dialogues.extend(view.dialogue, view.dialogue, "ann")
 
 
 async def test_nobody_is_asked_instead_before_the_moved_deadline() -> None:
     policy = EscalationPolicy(helpers=("ann", "bob"), repeats=0, answer_within_s=20.0)
     async with pretend_service(ONE_PART, FAULT, policy=policy, patient=True) as service:
         view = await open_question(service)
-        extended = await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "ann")
+        extended = await service.runtime.dialogues.extend(
+            view.dialogue, prompt_in(view).prompt, "ann"
+        )
         robot = next(iter(service.robots.robots.values()))
         robot.patient = False
         await service.runtime.pause(view.run)
@@ -186,12 +192,14 @@ async def test_a_restart_keeps_the_moved_deadline_and_what_is_left(tmp_path: Pat
     path = tmp_path / "journal.db"
     async with pretend_service(ONE_PART, FAULT, journal=path, patient=True) as service:
         view = await open_question(service)
-        await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "ann")
-        before = await service.runtime.dialogue(view.dialogue)
+        await service.runtime.dialogues.extend(view.dialogue, prompt_in(view).prompt, "ann")
+        before = await service.runtime.dialogues.view(view.dialogue)
     async with pretend_service(ONE_PART, journal=path, patient=True, boot=2) as service:
-        after = await service.runtime.dialogue(view.dialogue)
+        after = await service.runtime.dialogues.view(view.dialogue)
         assert after.prompt == before.prompt
-        extended = await service.runtime.extend(view.dialogue, prompt_in(view).prompt, "bob")
+        extended = await service.runtime.dialogues.extend(
+            view.dialogue, prompt_in(view).prompt, "bob"
+        )
         assert extended.extensions_left == 8
 
 
@@ -202,10 +210,10 @@ async def test_the_clip_of_a_fault_is_kept_after_the_question_and_belongs_to_it(
     async with pretend_service(ONE_PART, FAULT, patient=True, films=True) as service:
         view = await open_question(service)
         async with asyncio.timeout(60):
-            while not (await service.runtime.dialogue(view.dialogue)).clip:  # noqa: ASYNC110
+            while not (await service.runtime.dialogues.view(view.dialogue)).clip:  # noqa: ASYNC110
                 await asyncio.sleep(0)
         events = await service.journal.read(0, 1000)
-        clip = (await service.runtime.dialogue(view.dialogue)).clip
+        clip = (await service.runtime.dialogues.view(view.dialogue)).clip
         pictures = [await service.journal.picture(each.picture) for each in clip]
     raised = next(each for each in events if isinstance(each, ev.IssueRaised))
     recorded = next(each for each in events if isinstance(each, ev.ClipRecorded))
@@ -227,14 +235,14 @@ async def test_a_clip_of_no_dialogue_is_not_kept(service: PretendService) -> Non
     clip = ClipTaken(execution="other", issue="missed", pictures=[])
     await service.robots.report(robot, clip)
     assert service.journal.head == head
-    assert (await service.runtime.dialogue(view.dialogue)).clip == []
+    assert (await service.runtime.dialogues.view(view.dialogue)).clip == []
 
 
 async def test_a_second_clip_of_one_issue_is_not_kept() -> None:
     async with pretend_service(ONE_PART, FAULT, patient=True, films=True) as service:
         view = await open_question(service)
         async with asyncio.timeout(60):
-            while not (first := (await service.runtime.dialogue(view.dialogue)).clip):  # noqa: ASYNC110
+            while not (first := (await service.runtime.dialogues.view(view.dialogue)).clip):  # noqa: ASYNC110
                 await asyncio.sleep(0)
         events = await service.journal.read(0, 1000)
         raised = next(each for each in events if isinstance(each, ev.IssueRaised))
@@ -246,4 +254,4 @@ async def test_a_second_clip_of_one_issue_is_not_kept() -> None:
         await service.robots.report(robot, again)
         kept = await service.journal.read(0, 1000)
         assert sum(isinstance(each, ev.ClipRecorded) for each in kept) == 1
-        assert (await service.runtime.dialogue(view.dialogue)).clip == first
+        assert (await service.runtime.dialogues.view(view.dialogue)).clip == first

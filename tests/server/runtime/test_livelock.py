@@ -334,10 +334,11 @@ async def test_a_robot_that_comes_back_after_it_was_given_up_lets_go_of_what_it_
 async def test_an_answer_gives_a_robot_as_much_time_again() -> None:
     journal = SqliteJournal(":memory:")
     async with at_work(rejects_looks_while_it_asks, journal) as (service, _, run):
-        while not (asked := await service.runtime.dialogues("open", 10, 0)) or not asked[0].prompt:  # noqa: ASYNC110
+        dialogues = service.runtime.dialogues
+        while not (asked := await dialogues.page("open", 10, 0)) or not asked[0].prompt:  # noqa: ASYNC110
             await asyncio.sleep(0)
         state = service.runtime._runs[run].context.state
         before = state.progress
-        await service.runtime.answer(asked[0].dialogue, asked[0].prompt.prompt, "yes", "ben")
+        await dialogues.answer(asked[0].dialogue, asked[0].prompt.prompt, "yes", "ben")
         assert state.progress == before + 1
     journal.close()

@@ -120,11 +120,11 @@ async def test_a_run_that_ends_is_let_go_of(path: Path, folded: list[UUID]) -> N
 
 async def test_dialogues_of_ended_runs_are_found(path: Path) -> None:
     async with pretend_service(TWO_PARTS, journal=path) as service:
-        page = await service.runtime.dialogues("closed", 5, 2)
+        page = await service.runtime.dialogues.page("closed", 5, 2)
         assert [each.run for each in page] == [run_id(n) for n in range(2, 7)]
-        found = await service.runtime.dialogue(page[0].dialogue)
+        found = await service.runtime.dialogues.view(page[0].dialogue)
         assert (found.status, found.answered_by) == ("closed", "anna")
-        assert await service.runtime.dialogues("open", 100, 0) == []
+        assert await service.runtime.dialogues.page("open", 100, 0) == []
 
 
 async def test_a_pruned_run_is_unknown_also_if_it_was_just_looked_at(path: Path) -> None:

@@ -177,7 +177,7 @@ async def open_question(service: PretendService, **fields: Any) -> DialogueView:
 
 async def first_open_dialogue(service: PretendService) -> DialogueView:
     async with asyncio.timeout(60):
-        while not (waiting := await service.runtime.dialogues("open", 100, 0)):  # noqa: ASYNC110
+        while not (waiting := await service.runtime.dialogues.page("open", 100, 0)):  # noqa: ASYNC110
             await asyncio.sleep(0)
     return waiting[0]
 
@@ -205,7 +205,9 @@ async def test_the_first_answer_wins_and_the_second_is_told_who_answered() -> No
         dialogue = await open_question(service)
         answers = await asyncio.gather(
             *(
-                service.runtime.answer(dialogue.dialogue, prompt_of(dialogue), "yes", name)
+                service.runtime.dialogues.answer(
+                    dialogue.dialogue, prompt_of(dialogue), "yes", name
+                )
                 for name in ("ann", "bob", "cem")
             ),
             return_exceptions=True,
@@ -222,7 +224,9 @@ async def test_an_unknown_prompt_is_refused_and_changes_nothing() -> None:
         dialogue = await open_question(service)
         head = service.journal.head
         with pytest.raises(NotFoundError):
-            await service.runtime.answer(dialogue.dialogue, dialogue.dialogue, "yes", "ann")
+            await service.runtime.dialogues.answer(
+                dialogue.dialogue, dialogue.dialogue, "yes", "ann"
+            )
         assert service.journal.head == head
 
 
@@ -230,15 +234,15 @@ async def test_an_unknown_prompt_is_refused_and_changes_nothing() -> None:
 async def test_a_claim_shows_and_does_not_keep_another_from_answering() -> None:
     async with pretend_service(TWO_PARTS, HELD) as service:
         dialogue = await open_question(service)
-        claimed = await service.runtime.claim(dialogue.dialogue, "ann")
+        claimed = await service.runtime.dialogues.claim(dialogue.dialogue, "ann")
         assert claimed.claimed_by == "ann"
         with pytest.raises(ConflictError, match="ann"):
-            await service.runtime.claim(dialogue.dialogue, "bob")
-        answered = await service.runtime.answer(
+            await service.runtime.dialogues.claim(dialogue.dialogue, "bob")
+        answered = await service.runtime.dialogues.answer(
             dialogue.dialogue, prompt_of(dialogue), "yes", "bob"
         )
         assert answered.helper == "bob"
-        assert (await service.runtime.dialogue(dialogue.dialogue)).claimed_by is None
+        assert (await service.runtime.dialogues.view(dialogue.dialogue)).claimed_by is None
         events = await service.journal.read(0, 1000, dialogue.run)
     released = [(each.helper, each.expired) for each in of_type(events, ev.Released)]
     assert released == [("ann", False)]
@@ -249,11 +253,11 @@ async def test_who_answers_after_the_winning_answer_ended_the_run_is_told_who_wo
     async with pretend_service(TWO_PARTS, HELD) as service:
         dialogue = await open_question(service)
         prompt = prompt_of(dialogue)
-        await service.runtime.answer(dialogue.dialogue, prompt, "yes", "ann")
+        await service.runtime.dialogues.answer(dialogue.dialogue, prompt, "yes", "ann")
         await service.runtime.abort(dialogue.run)
         await service.runtime.wait_for_end(dialogue.run)
         with pytest.raises(LostRaceError, match="ann"):
-            await service.runtime.answer(dialogue.dialogue, prompt, "no", "bob")
+            await service.runtime.dialogues.answer(dialogue.dialogue, prompt, "no", "bob")
 
 
 @pytest.mark.usefixtures("deaf_watch")
@@ -268,7 +272,7 @@ async def test_a_run_can_be_paused_resumed_and_aborted() -> None:
         assert (await runtime.resume(run)).status is RunStatus.RUNNING
         assert (await runtime.abort(run)).status is RunStatus.ABORTED
         await runtime.wait_for_end(run)
-        assert (await runtime.dialogue(dialogue.dialogue)).reason == "aborted"
+        assert (await runtime.dialogues.view(dialogue.dialogue)).reason == "aborted"
         for late in (runtime.pause, runtime.abort):
             with pytest.raises(ConflictError):
                 await late(run)
@@ -294,10 +298,10 @@ async def test_after_a_restart_the_same_dialogue_is_still_open(tmp_path: Path) -
         before = await open_question(service)
     async with pretend_service(TWO_PARTS, journal=path, boot=2) as service:
         await first_open_dialogue(service)
-        after = await service.runtime.dialogue(before.dialogue)
+        after = await service.runtime.dialogues.view(before.dialogue)
         assert after.prompt == before.prompt
         assert after.status == "open"
-        await service.runtime.answer(before.dialogue, prompt_of(before), "yes", "ann")
+        await service.runtime.dialogues.answer(before.dialogue, prompt_of(before), "yes", "ann")
         view = await service.runtime.wait_for_end(before.run)
         events = await service.journal.read(0, 10_000, before.run)
     assert view.status is RunStatus.FINISHED
@@ -408,7 +412,7 @@ async def test_a_refusal_that_nobody_waits_for_any_more_leaves_the_run_alone() -
         await asyncio.sleep(0)
         asked.cancel()
         await asyncio.gather(asked, return_exceptions=True)
-        await service.runtime.answer(dialogue.dialogue, prompt_of(dialogue), "yes", "ann")
+        await service.runtime.dialogues.answer(dialogue.dialogue, prompt_of(dialogue), "yes", "ann")
         view = await service.runtime.wait_for_end(dialogue.run)
     assert view.status is RunStatus.FINISHED
 

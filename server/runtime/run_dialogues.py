@@ -1,0 +1,107 @@
+"""The dialogues of all runs, and what helpers do in them."""
+
+from collections.abc import Awaitable, Callable
+from itertools import islice
+from typing import Literal, cast
+from uuid import UUID
+
+from mend.errors import ConflictError
+from mend.server.errors import LostRaceError
+from mend.server.journal import events as ev
+from mend.server.runtime.run import Run
+from mend.server.runtime.run_states import RunStates
+from mend.server.runtime.run_views import dialogue_view
+from mend.server.runtime.views import DialogueView
+
+
+class RunDialogues:
+    """Implements `mend.server.runtime.service.DialogueService`.
+
+    `running`: a run that goes on. It raises `NotFoundError`, `UnreadableError` and `ConflictError`.
+    """
+
+    def __init__(self, states: RunStates, running: Callable[[UUID], Awaitable[Run]]) -> None:
+        self._states, self._running = states, running
+
+    async def page(
+        self, status: Literal["open", "closed"] | None, limit: int, offset: int
+    ) -> list[DialogueView]:
+        """A page of dialogues, oldest first; without those of runs that cannot be read."""
+        if status == "open":
+            # Whoever hears of an event finds it here already; the index is a moment ahead of that.
+            opened = self._states.open_dialogues()
+            return [dialogue_view(each) for each in islice(opened, offset, offset + limit)]
+        page = await self._states.page_of_dialogues(status, limit, offset)
+        views = [dialogue_view(each) for each in page]
+        return [each for each in views if status is None or each.status == status]
+
+    def count_open(self) -> int:
+        """How many dialogues are open."""
+        return sum(1 for _ in self._states.open_dialogues())
+
+    async def view(self, dialogue: UUID) -> DialogueView:
+        """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
+        return dialogue_view(await self._states.find_dialogue(dialogue))
+
+    async def answer(
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        answer: Literal["yes", "no"],
+        helper: str,
+        author: ev.Author | None = None,
+    ) -> ev.Answered:
+        """Answer a prompt: the first answer wins.
+
+        Raises `NotFoundError`, `LostRaceError` or `ConflictError`.
+        """
+        found = await self._states.find_dialogue(dialogue)
+        try:
+            run = await self._running(found.opened.run)
+            proxy = run.proxies[found.opened.robot]
+            answered = await run.request(
+                lambda: run.dialogues.answer(found, prompt, answer, helper, proxy, author)
+            )
+        except ConflictError:
+            # Who was first is told also where that answer has ended the run.
+            if prompt in found.answers:
+                raise LostRaceError(prompt, found.answers[prompt].helper) from None
+            raise
+        return cast(ev.Answered, answered)
+
+    async def extend(
+        self, dialogue: UUID, prompt: UUID, helper: str, author: ev.Author | None = None
+    ) -> ev.DeadlineExtended:
+        """Give the open question more time. Raises `NotFoundError` or `ConflictError`."""
+        found = await self._states.find_dialogue(dialogue)
+        run = await self._running(found.opened.run)
+        extended = await run.request(lambda: run.dialogues.extend(found, prompt, helper, author))
+        return cast(ev.DeadlineExtended, extended)
+
+    async def claim(
+        self,
+        dialogue: UUID,
+        helper: str,
+        *,
+        take_over: bool = False,
+        author: ev.Author | None = None,
+    ) -> DialogueView:
+        """Show the others that a helper is on it.
+
+        Raises `ConflictError` while another is, unless it is taken over from them.
+        """
+        found = await self._states.find_dialogue(dialogue)
+        run = await self._running(found.opened.run)
+        await run.request(
+            lambda: run.claims.claim(found, helper, take_over=take_over, author=author)
+        )
+        return dialogue_view(found)
+
+    async def release(
+        self, dialogue: UUID, helper: str, author: ev.Author | None = None
+    ) -> DialogueView:
+        """Give up a claim. Raises `ConflictError` without one."""
+        found = await self._states.find_dialogue(dialogue)
+        run = await self._running(found.opened.run)
+        await run.request(lambda: run.claims.release(found, helper, author))
+        return dialogue_view(found)
