@@ -23,7 +23,7 @@ class GripState(StrEnum):
     ABSENT = "absent"
     """The object never was between the fingers."""
     ASKEW = "askew"
-    """Something was pushed so that the fingers have not closed on the object as they were to."""
+    """The fingers have closed on something, but not on the object as they were to."""
     LOST = "lost"
     """It was held, and is not any more."""
 

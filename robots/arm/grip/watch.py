@@ -78,7 +78,7 @@ class GripWatch:
         regrasp: bool = False,
         rivals: Sequence[Rival] = (),
     ) -> None:
-        """`regrasp`: what was pushed may be grasped anew, so that it need be no other verdict.
+        """`regrasp`: what is not between the fingers as planned may be grasped anew.
 
         `rivals` may be there in the part's stead, until the first verdict.
         """
@@ -207,9 +207,10 @@ class GripWatch:
 
     def _first_verdict(self) -> GripState:
         as_planned = max(self._belief.of(Between.STRAIGHT), self._belief.of(Between.NOTHING))
-        if self._regrasp and self._pushed and as_planned < 0.5:
+        held = self.probability >= 0.5
+        if self._regrasp and as_planned < 0.5 and (self._pushed or not held):
             return GripState.ASKEW
-        return GripState.HELD if self.probability >= 0.5 else GripState.ABSENT
+        return GripState.HELD if held else GripState.ABSENT
 
 
 def _center(canvas: Mask, fallback: NDArray[np.float64]) -> tuple[float, float]:

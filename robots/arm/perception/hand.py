@@ -43,7 +43,7 @@ class HandSense:
 
     @property
     def has_askew(self) -> bool:
-        """Whether something was pushed so that it has to be grasped anew."""
+        """Whether what is between the fingers has to be let go of, and grasped anew."""
         return self.grip is not None and self.grip.state is GripState.ASKEW
 
     @property

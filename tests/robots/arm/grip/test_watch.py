@@ -171,6 +171,25 @@ def test_what_was_pushed_is_askew_where_it_can_be_grasped_anew(shows: str) -> No
     assert hand.watch.state is GripState.ASKEW
 
 
+def test_what_does_not_feel_like_the_part_is_grasped_anew_before_it_is_said_to_be_missed() -> None:
+    verdicts = []
+    for regrasp in (True, False):
+        hand = ScriptedHand("pink_bar")
+        hand.watch = GripWatch(hand.part, hand.grasp, MODEL, GRIPPER, regrasp=regrasp)
+        while hand.watch.state is GripState.UNDECIDED:
+            hand.read(shows="green_leg", opening_m=hand.grasp.width_m + 0.012)
+        verdicts.append(hand.watch.state)
+    assert verdicts == [GripState.ASKEW, GripState.ABSENT]
+
+
+def test_nothing_between_the_fingers_is_not_grasped_anew() -> None:
+    hand = ScriptedHand("pink_bar")
+    hand.watch = GripWatch(hand.part, hand.grasp, MODEL, GRIPPER, regrasp=True)
+    while hand.watch.state is GripState.UNDECIDED:
+        hand.read(shows=None, opening_m=0.0, presses=False)
+    assert hand.watch.state is GripState.ABSENT
+
+
 def test_what_is_held_as_planned_is_not_askew_however_it_was_pushed() -> None:
     hand = ScriptedHand("pink_bar")
     hand.watch = GripWatch(hand.part, hand.grasp, MODEL, GRIPPER, regrasp=True)
