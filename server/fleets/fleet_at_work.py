@@ -190,7 +190,7 @@ class FleetAtWork:
             self.dispatcher.robot_moved(robot, at, now_s)
         unwanted = self.dispatcher.legs_to_withdraw(now_s)
         while due := [e for e in self.dispatcher.legs_to_begin(now_s) if self._is_free(e.robot)]:
-            self._legs.note_begun(due[0])
+            self._legs.note_begun(due[0], now_s)
         return unwanted
 
     def _is_free(self, robot: str) -> bool:

@@ -38,10 +38,10 @@ class LegsUnderWay:
         """What is to be cancelled where the service stops."""
         return list(self._tasks.values())
 
-    def note_begun(self, leg: Leg) -> None:
+    def note_begun(self, leg: Leg, now_s: float) -> None:
         """A robot sets out for a leg, which is carried out once that is journaled."""
         start = self._book.at(leg.robot)
-        self._dispatcher.began(leg, self._book.now_s)
+        self._dispatcher.began(leg, now_s)
         self._set_out[leg.robot] = self._site.odometer(leg.robot)
         self._book.note(self._book.news.begun(leg, start))
 
