@@ -244,6 +244,25 @@ async def test_what_is_asked_for_is_fetched_and_handed_over_by_one_robot() -> No
         assert len(work.runs.runs) == 2
 
 
+async def test_that_time_goes_on_while_legs_are_decided_fails_nothing(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with working("a", "c") as work:
+        heard = work.site.time.heard
+
+        def where(_robot: str) -> None:
+            heard(work.fleet.now_s + 0.3)
+
+        monkeypatch.setattr(work.site, "whereabouts", where)
+        for name, place in (("one", "b"), ("other", "d")):
+            await work.fleet.submit(visit(name=name, place=place), None)
+        for number in (1, 2):
+            (await work.runs.nth(number)).ended.set_result(("finished", True))
+        for name in ("one", "other"):
+            await work.until(name, RequestStatus.DONE)
+    assert [each.getMessage() for each in caplog.records if "has failed" in each.getMessage()] == []
+
+
 async def test_of_what_was_brought_nobody_says_who_has_it() -> None:
     async with working("a") as work:
         await work.fleet.submit(asked(), None)
