@@ -69,9 +69,6 @@ def update_row(problem: ProblemArrays, plan: Plan, sweep: Sweep, row: int) -> bo
     """The same of one row in which nothing changes robots and no span binds."""
     sweep.reached[row] = 0
     fits = _drive_on(problem, plan, sweep, row)
-    if not fits:
-        # A robot that cannot even get home keeps this row: no plan with it is worth anything.
-        plan.rows[row].cost = inf
     for at in range(sweep.reached[row] - 1, -1, -1):
         _pull(problem, plan, row, at)
     sweep.newest[0] += 1
@@ -170,6 +167,8 @@ def _drive_on(problem: ProblemArrays, plan: Plan, sweep: Sweep, row: int) -> boo
             begin_s > problem.nodes[node].latest_s + SEARCH_S
             or load > problem.robots[robot].capacity + LOAD
         ):
+            # A robot that cannot even get home keeps this row: no plan with it is worth anything.
+            plan.rows[row].cost = inf
             return False
     return True
 

@@ -123,6 +123,18 @@ def test_there_is_no_plan_where_an_idle_robot_cannot_get_home_in_its_shift() -> 
     assert "the shift of slow ends at 30 s" in told
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_nor_is_there_one_where_others_may_hand_things_over(seed: int) -> None:
+    slow = Robot("slow", 0, 2, 2.0, Window(0.0, 30.0), speed=0.5)
+    robots = (Robot("left", 0, None, 2.0), slow, Robot("right", 4, None, 2.0))
+    items = (parcel("first", 0, 4), parcel("second", 4, 1))
+    exchange = Transfers((1, 2, 3), together=False, service_s=0.0)
+    problem = corridor(items=items, robots=robots, transfers=exchange)
+    state = state_for(arrays := problem_arrays(problem, CHAIN))
+    stepped(arrays, state, rng_from(np.random.default_rng(seed)), 200)
+    assert state.value[BEST] == float("inf")
+
+
 @given(problems(), seeds, st.integers(5, 80).map(float))
 @settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
 def test_steps_around_doors_are_valid_and_cost_what_they_say(
