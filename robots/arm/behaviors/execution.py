@@ -1,8 +1,11 @@
 """The execution of one behavior of an arm: what is looked for, planned, walked and confirmed."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from mend.robots.arm.behaviors.behavior import Move
 from mend.robots.arm.behaviors.confirmation import look_at_outcome
+from mend.robots.arm.behaviors.contact import Try
 from mend.robots.arm.behaviors.covering import CoveredResultGone
 from mend.robots.arm.behaviors.elsewhere import SeenElsewhere
 from mend.robots.arm.behaviors.preparation import prepare
@@ -16,6 +19,7 @@ from mend.robots.catalogue import Part
 from mend.robots.execution.execution import Execution
 from mend.robots.execution.execution_state import ExecutionState
 from mend.robots.execution.monitor import AnyMonitor, Reaction
+from mend.robots.execution.phase import Phase
 from mend.robots.execution.routine import Routine
 from mend.robots.execution.watch import Interruption
 from mend.robots.link.messages import Location, Resume, Resumed
@@ -52,6 +56,20 @@ class ArmExecution(Execution[ArmProgress]):
     def obstruction(self) -> Obstruction | None:
         """What was last seen to be in that way."""
         return self._progress.seen.obstruction
+
+    @property
+    def was_held_up(self) -> bool:
+        """Whether it waits on its way through a step, as something was felt there."""
+        progress = self._progress
+        return progress.contact is not None and bool(progress.way) and progress.step > 0
+
+    @property
+    def gentlest_try(self) -> Try:
+        """How the step under way is to be tried where something was felt."""
+        plan, tries = self._progress.planned, self._watch.tries(Phase.PREPARE)
+        action = plan.steps[self._progress.step - 1].action
+        own = action.speed if isinstance(action, Move) else 1.0
+        return replace(tries[-1], speed=tries[-1].speed * own)
 
     @property
     def destination(self) -> tuple[Part, Location | None] | None:

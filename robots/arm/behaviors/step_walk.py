@@ -7,15 +7,9 @@ from dataclasses import dataclass
 from mend.errors import IllegalTransitionError
 from mend.robots.arm.behaviors.backing_off import back_off, try_again
 from mend.robots.arm.behaviors.behavior import Move, Step
-from mend.robots.arm.behaviors.contact import (
-    Contact,
-    ContactWatch,
-    Track,
-    Try,
-    hindering_n,
-    is_arrival,
-)
+from mend.robots.arm.behaviors.contact import Contact, Try
 from mend.robots.arm.behaviors.covering import Covering
+from mend.robots.arm.behaviors.felt_motion import FeltMotion
 from mend.robots.arm.behaviors.planning import Plan
 from mend.robots.arm.behaviors.watch import ArmWatch
 from mend.robots.arm.behaviors.work import Work
@@ -111,7 +105,9 @@ class StepWalk:
         Raises `Interruption`.
         """
         step = self._progress.planned.steps[number - 1]
-        track, contact = Track(), ContactWatch(attempt.limit_n)
+        motion = None
+        if isinstance(step.action, Move):
+            motion = FeltMotion(self._arm, step.action.to, attempt.limit_n)
         self._begin(number, step, attempt.speed)
         arrived_s: float | None = None
         # A step may be over before the camera's next picture; it is judged at its start as well.
@@ -127,10 +123,8 @@ class StepWalk:
                     return None
             yield
             self._watch.note_force(self._arm.body.contact_force_n())
-            if isinstance(step.action, Move) and arrived_s is None:
-                force_n = self._feel(step.action, contact, track)
-                if force_n is not None:
-                    return _Felt(force_n, track.way_back())
+            if motion is not None and arrived_s is None and motion.is_held_up():
+                return _Felt(motion.strongest_n, motion.way_back())
 
     def _begin(self, number: int, step: Step, speed: float) -> None:
         part, plan = self._work.assignment.part, self._progress.planned
@@ -147,14 +141,3 @@ class StepWalk:
         else:
             self._perception.let_go()
             self._arm.start_opening(step.action.opening_m)
-
-    def _feel(self, move: Move, contact: ContactWatch, track: Track) -> float | None:
-        """Stop where something pushes lastingly; its force unless that ends the move."""
-        body, here = self._arm.body, self._arm.tool_pose()
-        track.note(here)
-        force = body.contact_force()
-        strength_n = body.contact_force_n() if here is None else hindering_n(force, here, move.to)
-        if not contact.feel(strength_n, body.control_period_s):
-            return None
-        self._arm.stop()
-        return None if here is not None and is_arrival(here, move.to) else contact.strongest_n

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from mend.robots.arm.behaviors.search import LOOK_AGAIN_S
 from mend.robots.arm.command_resolver import CommandResolver
 from mend.robots.arm.looks.expectation import AtPlace, ViewClear, VisualCheck
+from mend.robots.arm.looks.gentle_try import GentleTry
 from mend.robots.arm.looks.hand_over import take_from_person
 from mend.robots.arm.looks.in_reach import InReach
 from mend.robots.arm.looks.looker import Looker
@@ -33,7 +34,9 @@ def look_as_told(
         "way_clear": lambda: WayClear(looker),
         "view_clear": lambda: ViewClear(looker),
     }
-    return look_until(looker, command, make[look.expect](), look.within_s)
+    # Nobody is pushed before they had time to clear the way.
+    trial = GentleTry(looker) if look.expect == "way_clear" and look.within_s > 0.0 else None
+    return look_until(looker, command, make[look.expect](), look.within_s, trial)
 
 
 def look_once(looker: Looker, command: str) -> Routine[Looked]:
@@ -44,9 +47,13 @@ def look_once(looker: Looker, command: str) -> Routine[Looked]:
 
 
 def look_until(
-    looker: Looker, command: str, expectation: VisualCheck, within_s: float
+    looker: Looker,
+    command: str,
+    expectation: VisualCheck,
+    within_s: float,
+    trial: GentleTry | None = None,
 ) -> Routine[Looked]:
-    """Look every half second until it is so or `within_s` have passed.
+    """Look every half second until it is so, and a `trial` passes, or `within_s` have passed.
 
     That it is not so is said of nothing that robots have hidden all the time that just pass.
     """
@@ -60,6 +67,8 @@ def look_until(
             looker.perception.head.doubt()
         yield from looker.feel_whether_it_is_held()
         fulfilled = expectation.is_fulfilled()
+        if fulfilled and trial is not None:
+            fulfilled = yield from trial.passes()
         passing = not fulfilled and looker.others_pass(behind)
         if fulfilled or (left_s <= 1e-9 and not passing):
             return (yield from looker.answer_and_judge(command, fulfilled))

@@ -228,9 +228,11 @@ def test_the_way_is_clear_once_nothing_pushes_or_stands_in_it() -> None:
     bench.look(expect="way_clear", within_s=1.0)
     assert looked(bench).fulfilled is False
     bench.body.force_n = 0.0
-    bench.look(expect="way_clear", within_s=5.0)
+    bench.look(expect="way_clear")
     assert looked(bench).fulfilled is True
     assert bench.body.tool == where
+    bench.look(expect="way_clear", within_s=5.0)
+    assert looked(bench).fulfilled is True
     bench.send(Resume(execution="e1"))
     bench.run()
     assert bench.of(Resumed) == [Resumed(execution="e1", step=5)]
@@ -248,6 +250,51 @@ def test_what_presses_along_the_way_that_is_left_is_not_in_it() -> None:
         bench.body.force_n = force_n
         bench.look(expect="way_clear", within_s=1.0)
         assert looked(bench).fulfilled is clear
+
+
+def held_up_by_a_wall(bench: RobotBench, until_s: float = math.inf) -> list[float]:
+    """Bring a robot to hold before a wall that no camera sees; the speeds at which it is met."""
+    met: list[float] = []
+
+    def act() -> None:
+        was, there = bench.body.force_n, bench.body.tool.y > -0.15
+        bench.body.force_n = 45.0 if there and bench.robot.time_s() < until_s else 0.0
+        if bench.body.force_n > was:
+            met.append(bench.body.speeds[-1])
+
+    bench.body.at_cycle = act
+    bench.start("pink_bar")
+    assert bench.run_until(IssueDetected).issue == "blocked"
+    bench.run()
+    met.clear()
+    return met
+
+
+def test_what_was_felt_and_cannot_be_seen_is_still_there_while_a_slow_try_feels_it() -> None:
+    bench = RobotBench()
+    met = held_up_by_a_wall(bench)
+    bench.look(expect="way_clear")
+    assert looked(bench).fulfilled is True
+    assert met == []
+    began_s = bench.robot.time_s()
+    bench.look(expect="way_clear", within_s=20.0)
+    assert looked(bench).fulfilled is False
+    assert 19.0 < bench.robot.time_s() - began_s < 24.0
+    assert 2 <= len(met) <= 4
+    assert met == pytest.approx([0.15] * len(met))
+    assert bench.body.tool.y < -0.15
+
+
+def test_what_was_felt_is_gone_once_a_slow_try_feels_nothing() -> None:
+    bench = RobotBench()
+    met = held_up_by_a_wall(bench, until_s=20.0)
+    bench.look(expect="way_clear", within_s=40.0)
+    assert looked(bench).fulfilled is True
+    assert len(met) >= 1
+    assert 20.0 < bench.robot.time_s() < 30.0
+    bench.send(Resume(execution="e1"))
+    bench.run()
+    assert bench.of(Finished) == [Finished(execution="e1")]
 
 
 @pytest.mark.parametrize("unplannable", [False, True], ids=["held", "no path was found"])
