@@ -178,7 +178,13 @@ def _next_try(record: RunRecord, index: int, event: ev.Prompt, said: re.Match[st
     dropped = any(isinstance(each, ev.NodeAbandoned) for each in later)
     instead = re.search(r"or I take (.*?) instead", event.text)
     replaced = instead is not None and any(_is_begun(each, instead[1]) for each in later)
-    return None if again or ended or dropped or replaced else "it was never tried again"
+    # Where what an alternative had done is seen gone another one may be nearer.
+    undone = any(
+        isinstance(each, ev.NodeUndone) and record.are_alternatives_above(event.node, each.node)
+        for each in later
+    )
+    kept = again or ended or dropped or replaced or undone
+    return None if kept else "it was never tried again"
 
 
 def _is_begun(event: ev.Event, names: str) -> bool:

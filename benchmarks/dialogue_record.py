@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from untruths import Rest, equals_of, leaves_of
+from untruths import Rest, equals_of, kinds_of, leaves_of
 
 from mend.robots.body import Matrix4
 from mend.robots.vision.line_of_sight import sight_of
@@ -61,6 +61,7 @@ class RunRecord:
         self._moments = moments
         self._scene = Scene.model_validate(started.scene, strict=False)
         self._leaves = leaves_of(started)
+        self._kinds = kinds_of(started)
         self._eyes = _eyes_of(started, self._scene)
         self._raised: dict[str, ev.IssueRaised] = {}
         self._opened: dict[Any, int] = {}
@@ -72,6 +73,13 @@ class RunRecord:
                 self._raised[raised.node] = raised
             case ev.DialogueOpened() as opened:
                 self._opened[opened.dialogue] = index
+
+    def are_alternatives_above(self, node: str, other: str) -> bool:
+        """Whether an OR is above both nodes."""
+        return any(
+            kind == "or" and all(each.startswith(path.rstrip("/") + "/") for each in (node, other))
+            for path, kind in self._kinds.items()
+        )
 
     def object_of(self, node: str) -> str | None:
         """What a leaf puts at its place; None without one."""

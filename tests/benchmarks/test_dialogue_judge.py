@@ -76,12 +76,16 @@ class Told:
         return self
 
     def begin(
-        self, scene: Scene = SCENE, world: str = "tabletop", robots: Sequence[str] = ("robot",)
+        self,
+        scene: Scene = SCENE,
+        world: str = "tabletop",
+        robots: Sequence[str] = ("robot",),
+        kind: str = "then",
     ) -> "Told":
         self.add(
             ev.RunStarted,
             tree_name="tree",
-            tree=definition_of({"then": LEAVES}).model_dump(mode="json"),
+            tree=definition_of({kind: LEAVES}).model_dump(mode="json"),
             scene=scene.model_dump(mode="json"),
             world=world,
             robots=list(robots),
@@ -320,6 +324,14 @@ def test_the_next_attempt_is_counted_and_must_come() -> None:
     assert never.wrong() == ["it was never tried again"]
     miscounted = told().reset(failed=True).start().say(text).close().reset(failed=True).start()
     assert miscounted.wrong() == ["2 attempts have failed"]
+
+
+@pytest.mark.parametrize("kind", ["then", "or"])
+def test_where_an_alternative_is_seen_undone_another_try_may_never_come(kind: str) -> None:
+    text = "I heard no answer. I try again (attempt 2 of 3)."
+    told = Told().begin(kind=kind).alarm().say(text).close().reset(failed=True)
+    told.add(ev.NodeUndone, node="/1", name="part_2", reason="part_2 is no longer at spot_2")
+    assert told.wrong() == ([] if kind == "or" else ["it was never tried again"])
 
 
 def test_whichever_other_part_was_promised_may_come_instead_of_the_next_attempt() -> None:
