@@ -110,7 +110,7 @@ class Robot:
             room=next((each.room for each in subsystems if each.room is not None), None),
             keeps_clear=all(each.keeps_clear for each in subsystems),
             avoids_ways=any(each.avoids_ways for each in subsystems),
-            makes_way=any(each.makes_way for each in subsystems),
+            base=next((each.base for each in subsystems if each.base is not None), None),
             notes_taken=any(each.notes_taken for each in subsystems),
         )
 

@@ -44,13 +44,15 @@ AGAIN_S = 2.0
 class Standing:
     """A robot as it says where it is, in metres of its floor's frame.
 
-    `way`: from where it is to where it leaves the floor or ends, empty for who goes nowhere.
-    `may_move`: whether it could make way now. `barred`: whether it drives, and what it sees leaves
-    it no way on.
+    All of it is within `radius_m` of there; it drives at `speed_m_s`. `way`: from where it is to
+    where it leaves the floor or ends, empty for who goes nowhere. `may_move`: whether it could make
+    way now. `barred`: whether it drives, and what it sees leaves it no way on.
     """
 
     floor: str
     at: Point
+    radius_m: float
+    speed_m_s: float
     way: Sequence[Point] = ()
     may_move: bool = False
     barred: bool = False
@@ -67,14 +69,10 @@ class Yielding:
 
 
 class RightOfWay:
-    """Decides who makes way on one building's floors.
+    """Decides who makes way on one building's floors; times are of one clock."""
 
-    `radius_m`, `speed_m_s`: of its robots. Times are of one clock.
-    """
-
-    def __init__(self, building: Building, radius_m: float, speed_m_s: float) -> None:
+    def __init__(self, building: Building) -> None:
         self._building = building
-        self._radius_m, self._speed_m_s = radius_m, speed_m_s
         self._under_way: dict[str, Yielding] = {}
         self._times: dict[frozenset[str], tuple[int, float]] = {}
         self._again_s: dict[frozenset[str], float] = {}
@@ -103,6 +101,13 @@ class RightOfWay:
             self._again_s[pair] = now_s + AGAIN_S
         return None
 
+    def take_back(self, decided: Yielding, now_s: float) -> None:
+        """What was decided comes to nothing; whether it can by then is looked at again later."""
+        pair = frozenset((decided.robot, decided.other))
+        self._under_way.pop(decided.robot, None)
+        self._times.pop(pair, None)
+        self._again_s[pair] = now_s + AGAIN_S
+
     # --- Within -------------------------------------------------------------------------------
 
     def _met(self, robot: str, standings: Mapping[str, Standing]) -> str | None:
@@ -113,7 +118,7 @@ class RightOfWay:
             if name == robot or other.floor != mine.floor:
                 continue
             away_m = math.dist(mine.at, other.at)
-            near = away_m <= 2.0 * self._radius_m + MEETS_M and self._bars(other, mine)
+            near = away_m <= _touch_m(mine, other) + MEETS_M and self._bars(other, mine)
             if near and (self._bars(mine, other) or not other.way):
                 found.append((away_m, name))
         return min(found, default=(0.0, None))[1]
@@ -122,11 +127,12 @@ class RightOfWay:
         """Whether one stands on what is next of the way of the other."""
         if not other.way:
             return False
-        ahead = _first(sampled(other.way), 2.0 * self._radius_m + 2.0 * MEETS_M)
+        touch_m = _touch_m(one, other)
+        ahead = _first(sampled(other.way), touch_m + 2.0 * MEETS_M)
         away_m = np.hypot(*(ahead - one.at).T)
         nearest = int(np.argmin(away_m))
         # Who stands behind or beside is left behind.
-        return nearest > 0 and bool(away_m[nearest] < 2.0 * self._radius_m + APART_M)
+        return nearest > 0 and bool(away_m[nearest] < touch_m + APART_M)
 
     def _between(
         self, robot: str, other: str, standings: Mapping[str, Standing], now_s: float
@@ -137,7 +143,7 @@ class RightOfWay:
         for one, for_whom in both:
             bay = self._bay(one, for_whom, standings) if standings[one].may_move else None
             if bay is not None:
-                until_s = now_s + self._takes_s(bay, standings[for_whom])
+                until_s = now_s + self._takes_s(bay, standings[one], standings[for_whom])
                 makes = Yielding(one, for_whom, bay, until_s)
                 found.append((one in self._under_way, _length_m(sampled(bay)), one, makes))
         return min(found, key=lambda each: each[:3])[3] if found else None
@@ -149,16 +155,15 @@ class RightOfWay:
         mine, theirs = standings[robot], standings[other]
         floor, grid = self._building.floors[mine.floor], FloorGrid(mine.at)
         here = [e for n, e in standings.items() if n != robot and e.floor == mine.floor]
-        between_m = 2.0 * self._radius_m
         walls_m = grid.away_from_segments(self._walls(floor, (mine, theirs)))
-        free = walls_m >= min(self._radius_m + WALL_M, grid.at(walls_m, mine.at))
-        rests = walls_m >= self._radius_m + WALL_M
+        free = walls_m >= min(mine.radius_m + WALL_M, grid.at(walls_m, mine.at))
+        rests = walls_m >= mine.radius_m + WALL_M
         for each in here:
-            away_m = grid.away_from_point(each.at)
+            away_m, between_m = grid.away_from_point(each.at), _touch_m(mine, each)
             free &= away_m >= min(between_m + APART_M / 2.0, math.dist(mine.at, each.at) - 0.02)
             rests &= away_m >= between_m + APART_M
-        rests &= grid.away_from(self._kept_free(theirs)) >= between_m + APART_M
-        rests &= self._off_passages(mine.floor, grid)
+        rests &= grid.away_from(self._kept_free(theirs)) >= _touch_m(mine, theirs) + APART_M
+        rests &= self._off_passages(mine.floor, grid, _touch_m(mine, theirs))
         reach = grid.reach(mine.at, free)
         metres = np.where(rests, reach.metres, math.inf)
         row, column = np.unravel_index(int(np.argmin(metres)), metres.shape)
@@ -182,25 +187,26 @@ class RightOfWay:
                 shut[crossed_by(np.array([*a, *b]), doors)] = False
         return np.concatenate([floor.wall_segments, doors[shut]])
 
-    def _off_passages(self, floor_name: str, grid: FloorGrid) -> Mask:
+    def _off_passages(self, floor_name: str, grid: FloorGrid, touch_m: float) -> Mask:
         """Which cells bar neither a door nor a cabin."""
         floor = self._building.floors[floor_name]
         posts = np.array([(*a, *b) for a, b in (each.posts for each in floor.doors.values())])
-        off = grid.away_from_segments(posts.reshape(-1, 4)) >= 2.0 * self._radius_m
+        off = grid.away_from_segments(posts.reshape(-1, 4)) >= touch_m
         for elevator, each in self._building.document.elevators.items():
             if floor_name in each.stops:
                 stop = stop_of(self._building, elevator, floor_name)
-                off &= grid.away_from_point(stop) >= CABIN_M + 2.0 * self._radius_m
+                off &= grid.away_from_point(stop) >= CABIN_M + touch_m
         return np.asarray(off)
 
-    def _takes_s(self, bay: Sequence[Point], other: Standing) -> float:
+    def _takes_s(self, bay: Sequence[Point], mine: Standing, other: Standing) -> float:
         """How long it takes until the other one is past where somebody makes way for it."""
         made = sampled(bay)
         ahead = self._kept_free(other)
         near_m = np.hypot(*(ahead[:, None] - made[None]).T).T.min(axis=1)
-        passed = np.flatnonzero(near_m < 2.0 * self._radius_m + APART_M)
+        passed = np.flatnonzero(near_m < _touch_m(mine, other) + APART_M)
         past = ahead[: 1 + (int(passed[-1]) if len(passed) else 0)]
-        return _LATER_S + _LATER * (_length_m(made) + _length_m(past)) / self._speed_m_s
+        drives_s = _length_m(made) / mine.speed_m_s + _length_m(past) / other.speed_m_s
+        return _LATER_S + _LATER * drives_s
 
     def _resolved_often(self, pair: frozenset[str], now_s: float) -> bool:
         times, last_s = self._times.get(pair, (0, -math.inf))
@@ -211,6 +217,11 @@ class RightOfWay:
         times, last_s = self._times.get(pair, (0, -math.inf))
         self._times[pair] = (times + 1 if now_s < last_s + FORGET_S else 1), decided.until_s
         self._under_way[decided.robot] = decided
+
+
+def _touch_m(one: Standing, other: Standing) -> float:
+    """How far apart the middles of two are that touch."""
+    return one.radius_m + other.radius_m
 
 
 def _first(points: Matrix, metres: float) -> Matrix:

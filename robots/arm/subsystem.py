@@ -81,7 +81,7 @@ class ArmSubsystem:
     keeps_clear = False
     driven = None
     avoids_ways = False
-    makes_way = False
+    base = None
     notes_taken = False
     between_floors = False
 

@@ -32,6 +32,7 @@ from mend.robots.execution.monitor import AnyMonitor, for_view
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
     Avoid,
+    BaseLimits,
     Driven,
     Location,
     Look,
@@ -97,9 +98,9 @@ class BaseSubsystem:
         self.effector.failed = {each.robot: (each.x, each.y, each.z) for each in told.failed}
 
     @property
-    def makes_way(self) -> bool:
-        """It drives, so it may meet others."""
-        return True
+    def base(self) -> BaseLimits:
+        body = self.effector.body
+        return BaseLimits(radius_m=body.radius_m, speed_m_s=body.limits.speed_m_s)
 
     def make_way(self, told: MakeWay) -> None:
         """Do so in the drive under way; who is not driving bars nobody's way for long."""

@@ -9,6 +9,7 @@ from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
     Avoid,
+    BaseLimits,
     Driven,
     Look,
     Looked,
@@ -64,8 +65,8 @@ class Subsystem(Protocol):
         ...
 
     @property
-    def makes_way(self) -> bool:
-        """Whether it makes way for another robot that it meets."""
+    def base(self) -> BaseLimits | None:
+        """How wide and fast it is where it meets another robot; None if it does not drive."""
         ...
 
     def make_way(self, told: MakeWay) -> None:

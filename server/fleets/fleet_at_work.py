@@ -103,7 +103,9 @@ class FleetAtWork:
             () if kept is None else kept.errands,
         )
         self.operators = Operators(self._book, self._errands, self._legs)
-        meetings = Meetings(dispatcher.building, site.frames, places.names, self._occupation)
+        meetings = Meetings(
+            dispatcher.building, site.frames, places.names, self._occupation, site.base_of
+        )
         self._meeting_watch = MeetingWatch(
             meetings, site.make_way, self._have_met, lambda: self.shown_s
         )

@@ -59,3 +59,5 @@ class MeetingWatch:
                 self._told(robot, told)
         elif (place := self._meetings.place_to_rest(decided, standings)) is not None:
             await self._met(decided, place)
+        else:
+            self._meetings.take_back(decided, now_s)

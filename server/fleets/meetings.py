@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Container, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,10 +12,8 @@ from mend.maps.building.building import Building
 from mend.robots.base.body import BasePose
 from mend.robots.base.floor_ways import FloorWays
 from mend.robots.execution.command_error import CommandError
-from mend.robots.link.messages import MakeWay, Poses, WayPoint
+from mend.robots.link.messages import BaseLimits, MakeWay, Poses, WayPoint
 from mend.server.poses.bases import in_scene
-from mend.sim.building.building_robot import RADIUS_M
-from mend.sim.building.scene import NEEDS_M
 from mend.tasks.frames import Frame
 
 Standings = Mapping[str, Standing]
@@ -24,14 +22,14 @@ NEAR_M = 5.0
 """Of robots that are farther from one that does not get on it matters only where they stand."""
 PATIENCE_S = 1.5
 """So long robots that meet try to get past each other by themselves."""
-SPEED_M_S = 1.0
-"""About as fast as robots drive."""
 THERE_M = 0.5
 """Who stands so near to where it goes next is at work there, or waits for an elevator."""
 ON_WAY_M = 0.6
 """Who has come off its way is no farther from it."""
-_OFF_WAY_M = 0.9
-"""A place so far from a robot's way is not on it."""
+_OFF_WAY_M = 0.4
+"""A place where a robot has so much room to one that comes past is not on its way."""
+_SPARE_M = 0.05
+"""So much farther than its rim a robot keeps from walls."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +46,8 @@ class Occupation:
 class Meetings:
     """Knows where the robots of a site are, and resolves where they meet.
 
-    `occupation` tells what each is about. Robots that do not say whether they are barred are only
-    driven round.
+    `occupation` tells what each is about, `base_of` how wide and fast it is; robots that do not say
+    that, or whether they are barred, are only driven round.
     """
 
     def __init__(
@@ -58,12 +56,14 @@ class Meetings:
         frames: Mapping[str, Frame],
         reachable: Container[str],
         occupation: Callable[[str], Occupation],
+        base_of: Callable[[str], BaseLimits | None],
     ) -> None:
         """`reachable`: the places that robots can be sent to, as `FLOOR/PLACE`."""
         self._building, self._frames = building, frames
         self._reachable, self._occupation = reachable, occupation
-        self._right_of_way = RightOfWay(building, RADIUS_M, SPEED_M_S)
-        self._ways = FloorWays(building, Frame(), SPEED_M_S, NEEDS_M)
+        self._base_of = base_of
+        self._right_of_way = RightOfWay(building)
+        self._ways: dict[tuple[float, float], FloorWays] = {}
         self._poses: dict[str, Poses] = {}
         self._since_s: dict[str, float] = {}
         """Since when what robots see has left them no way on, by their clocks."""
@@ -114,22 +114,32 @@ class Meetings:
         As `FLOOR/PLACE`; None where robots are sent to no such place.
         """
         other, floor = standings[decided.other], standings[decided.robot].floor
-        taken = [e.at for n, e in standings.items() if n != decided.robot and e.floor == floor]
-        taken += [(x, y) for x, y in sampled(other.way, _OFF_WAY_M / 2.0).tolist()]
+        own_m = standings[decided.robot].radius_m + _OFF_WAY_M
+        taken = [
+            (e.at, own_m + e.radius_m)
+            for n, e in standings.items()
+            if n != decided.robot and e.floor == floor
+        ]
+        taken += [((x, y), own_m + other.radius_m) for x, y in sampled(other.way).tolist()]
         free = [
             (math.dist((place.x, place.y), decided.way[-1]), f"{floor}/{name}")
             for name, place in self._building.floors[floor].places.items()
             if f"{floor}/{name}" in self._reachable
-            and all(math.dist((place.x, place.y), each) >= _OFF_WAY_M for each in taken)
+            and all(math.dist((place.x, place.y), at) >= away_m for at, away_m in taken)
         ]
         return min(free, default=(0.0, None))[1]
+
+    def take_back(self, decided: Yielding, now_s: float) -> None:
+        """Nobody makes way after all."""
+        self._right_of_way.take_back(decided, now_s)
 
     # --- Within -------------------------------------------------------------------------------
 
     def _stands(self, robot: str) -> bool:
         """Whether it has not got on for a while."""
         poses = self._poses[robot]
-        return bool(poses.barred) and poses.time >= self._since_s[robot] + PATIENCE_S
+        stood = poses.time >= self._since_s[robot] + PATIENCE_S
+        return bool(poses.barred) and stood and self._base_of(robot) is not None
 
     def _told(
         self, robot: str, other: str, way: list[WayPoint], z: float, left_s: float
@@ -139,17 +149,31 @@ class Meetings:
         return MakeWay(other=other, way=way, z=z, until=until)
 
     def _standing(self, robot: str, floor: str, at: Point, *, near: bool) -> Standing:
+        base, barred = self._base_of(robot), self._poses[robot].barred
+        widest = base or self._widest()
+        stands = Standing(floor, at, widest.radius_m, widest.speed_m_s)
         if not near:
-            return Standing(floor, at)
-        occupation, barred = self._occupation(robot), self._poses[robot].barred
+            return stands
+        occupation, knows = self._occupation(robot), base is not None and barred is not None
         if occupation.goal is None:
-            return Standing(floor, at, may_move=occupation.rests)
-        way = self._way(floor, at, occupation.goal)
+            return replace(stands, may_move=occupation.rests)
+        way = self._way(floor, at, occupation.goal, self._ways_of(widest))
         if not barred and way and math.dist(at, way[-1]) < THERE_M:
-            return Standing(floor, at, may_move=barred is not None)
-        return Standing(floor, at, way, barred is not None, self._stands(robot))
+            return replace(stands, may_move=knows)
+        return replace(stands, way=way, may_move=knows, barred=self._stands(robot))
 
-    def _way(self, floor: str, at: Point, goal: str) -> list[Point]:
+    def _widest(self) -> BaseLimits:
+        """What is reckoned of a robot that has not said how wide it is."""
+        told = [base for each in self._poses if (base := self._base_of(each)) is not None]
+        return max(told, key=lambda each: each.radius_m)
+
+    def _ways_of(self, base: BaseLimits) -> FloorWays:
+        key = base.speed_m_s, base.radius_m + _SPARE_M
+        if key not in self._ways:
+            self._ways[key] = FloorWays(self._building, Frame(), *key)
+        return self._ways[key]
+
+    def _way(self, floor: str, at: Point, goal: str, ways: FloorWays) -> list[Point]:
         """What is left of the way to a place on this floor; empty where there is none."""
         to_floor, place = goal.split("/", 1)
         there = self._building.floors[to_floor]
@@ -157,9 +181,9 @@ class Meetings:
         to = BasePose(there.places[place].x, there.places[place].y, 0.0, there.height)
         try:
             if floor != to_floor:
-                ride = self._ways.rides(here, to)[0]
+                ride = ways.rides(here, to)[0]
                 to = ride.wait_at or ride.inside
-            return _left_of([at, *self._ways.path(here, to)], at)
+            return _left_of([at, *ways.path(here, to)], at)
         except CommandError:
             return []
 

@@ -9,6 +9,7 @@ from uuid import UUID, uuid4
 from mend.errors import ConflictError
 from mend.robots.link.messages import (
     Avoid,
+    BaseLimits,
     ClosedWay,
     FailedRobot,
     Held,
@@ -200,9 +201,13 @@ class Site:
 
     def make_way(self, robot: str, told: MakeWay) -> None:
         """Have a robot make way, or wait for one that does, if it knows of that."""
-        hello = self._registry.hello(robot)
-        if hello is not None and hello.makes_way and self.is_connected(robot):
+        if self.base_of(robot) is not None and self.is_connected(robot):
             self._registry.send(robot, str(uuid4()), told, renews=False)
+
+    def base_of(self, robot: str) -> BaseLimits | None:
+        """How wide and fast a robot has said that it is; None of one that does not make way."""
+        hello = self._registry.hello(robot)
+        return None if hello is None else hello.base
 
     def _told_on_coming(self, robot: str) -> None:
         if self._closed or self._asks_after_s or self._failed:

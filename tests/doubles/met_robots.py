@@ -22,7 +22,10 @@ class MetRobots:
         building = building_of(bench.scene)
         places = [each.name for each in building.graph.places]
         self._bench, self._goals = bench, goals
-        self._meetings = Meetings(building, frames_of(bench.scene), places, self._occupation)
+        bases = {each.name: each.hello("1").base for each in bench.group.agents}
+        self._meetings = Meetings(
+            building, frames_of(bench.scene), places, self._occupation, bases.get
+        )
         self._looks_s = 0.0
         self.told: list[tuple[str, MakeWay]] = []
         self.sent: list[tuple[str, str | None]] = []

@@ -20,6 +20,7 @@ def members(union: object) -> list[type[BaseModel]]:
 
 PARTS: dict[str, type[BaseModel]] = {
     "reach": m.ReachLimits,
+    "base": m.BaseLimits,
     "executing": m.ActiveExecution,
     "driven": m.Driven,
     "detection": m.Detection,

@@ -8,6 +8,7 @@ from mend.robots.link.messages.commands import CommandBody
 from mend.robots.link.messages.parts import (
     IDENTITY,
     ActiveExecution,
+    BaseLimits,
     Driven,
     PoseLayout,
     PoseValues,
@@ -39,7 +40,7 @@ class Hello(Message):
     `shows`: what its `poses` hold; None if it sends none. `room`: without it no other robot of its
     run works while its arm does not rest. `keeps_clear`: it moves about and keeps clear of others
     by what it senses itself, so that no space is kept for it. `driven`: None without a base.
-    `avoids_ways`: it takes `avoid`. `notes_taken`: it takes `note_taken`. `makes_way`: it takes
+    `avoids_ways`: it takes `avoid`. `notes_taken`: it takes `note_taken`. `base`: it drives, takes
     `make_way`, and its `poses` say whether it is `barred`.
     """
 
@@ -60,7 +61,7 @@ class Hello(Message):
     driven: Driven | None = None
     avoids_ways: bool = False
     notes_taken: bool = False
-    makes_way: bool = False
+    base: BaseLimits | None = None
 
 
 class Report(Message):

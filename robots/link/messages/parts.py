@@ -52,6 +52,17 @@ class SwingLimits(Message):
     tool: tuple[Coordinate, Coordinate]
 
 
+class BaseLimits(Message):
+    """What others reckon with where they pass a robot that drives.
+
+    All of it, with what it carries, is within `radius_m` of its middle; `speed_m_s`: as fast as it
+    drives where nothing says less.
+    """
+
+    radius_m: Annotated[float, Field(gt=0.0)]
+    speed_m_s: Annotated[float, Field(gt=0.0)]
+
+
 class RoomLimits(Message):
     """The room that an arm takes in the plane, in metres.
 

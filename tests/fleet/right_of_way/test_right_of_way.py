@@ -22,7 +22,7 @@ from mend.maps.building.building import Building, BuildingDocument, Door, Floor,
 from mend.maps.building.clearance import distances_m
 from mend.maps.building.random_building import random_building
 
-RADIUS_M, SPEED_M_S = 0.25, 1.0
+BASE = RADIUS_M, SPEED_M_S = 0.25, 1.0
 CELL_M = 0.1
 POSTS = ((5.0, 1.55), (5.0, 2.45))
 
@@ -41,12 +41,12 @@ def two_rooms(*walls: tuple[float, float, float, float]) -> Building:
 
 
 def right_of_way(building: Building | None = None) -> RightOfWay:
-    return RightOfWay(building or two_rooms(), RADIUS_M, SPEED_M_S)
+    return RightOfWay(building or two_rooms())
 
 
 def at(x: float, *way: Point, y: float = 2.0, barred: bool = True) -> Standing:
     """Somebody who drives."""
-    return Standing("F1", (x, y), [(x, y), *way], may_move=True, barred=barred)
+    return Standing("F1", (x, y), *BASE, [(x, y), *way], may_move=True, barred=barred)
 
 
 EAST, WEST = (8.0, 2.0), (2.0, 2.0)
@@ -88,7 +88,7 @@ def test_who_makes_way_already_goes_before_who_stands_behind_it() -> None:
     scale = 0.75 / math.hypot(*ahead)
     behind = other.at[0] + scale * ahead[0], other.at[1] + scale * ahead[1]
     makes = replace(other, way=[other.at, *first.way, (x, y)])
-    comes = Standing("F1", behind, [behind, other.at], may_move=True)
+    comes = Standing("F1", behind, *BASE, [behind, other.at], may_move=True)
     standings = {**MET, first.robot: makes, "carl": comes}
     decided = rights.decide(standings, 1.0)
     assert decided is not None
@@ -110,6 +110,26 @@ def test_who_has_not_met_anybody_goes_on(changed: dict[str, Standing]) -> None:
     assert right_of_way().decide(changed, 0.0) is None
 
 
+@pytest.mark.parametrize("radius_m", [0.2, 0.3, 0.38])
+def test_a_wide_robot_needs_a_bay_that_is_farther_off_the_way(radius_m: float) -> None:
+    asks = replace(MET["bob"], may_move=False)
+    makes = replace(MET["ada"], radius_m=radius_m)
+    decided = right_of_way().decide({"ada": makes, "bob": asks}, 0.0)
+    assert decided is not None
+    assert decided.robot == "ada"
+    off_m = np.hypot(*(sampled(asks.way) - np.array(decided.way[-1])).T).min()
+    assert off_m >= RADIUS_M + radius_m + APART_M - 1.5 * CELL_M
+
+
+def test_a_slow_robot_is_waited_for_longer() -> None:
+    decided = right_of_way().decide(MET, 0.0)
+    assert decided is not None
+    slow = {name: replace(each, speed_m_s=0.25) for name, each in MET.items()}
+    again = right_of_way().decide(slow, 0.0)
+    assert again is not None
+    assert again.until_s > decided.until_s + 5.0
+
+
 def test_who_cannot_be_told_is_let_pass() -> None:
     asks = replace(MET["ada"], may_move=False, barred=False)
     decided = right_of_way().decide({"ada": asks, "bob": MET["bob"]}, 0.0)
@@ -118,7 +138,7 @@ def test_who_cannot_be_told_is_let_pass() -> None:
 
 
 def test_who_rests_in_the_way_goes_and_nobody_makes_way_for_it() -> None:
-    rests = Standing("F1", (5.4, 2.0), may_move=True)
+    rests = Standing("F1", (5.4, 2.0), *BASE, may_move=True)
     decided = right_of_way().decide({"ada": MET["ada"], "bob": rests}, 0.0)
     assert decided is not None
     assert (decided.robot, decided.other) == ("bob", "ada")
@@ -159,8 +179,8 @@ def test_a_bay_is_clear_of_walls_and_of_the_way_that_is_made(
     door = (ax + bx) / 2, (ay + by) / 2
     inside, outside = (_towards(door, (place.x, place.y), off_m / 2.0) for place in (room, hall))
     standings = {
-        "ada": Standing("F1", inside, [inside, door, (hall.x, hall.y)], True, True),
-        "bob": Standing("F1", outside, [outside, door, (room.x, room.y)], True, True),
+        "ada": Standing("F1", inside, *BASE, [inside, door, (hall.x, hall.y)], True, True),
+        "bob": Standing("F1", outside, *BASE, [outside, door, (room.x, room.y)], True, True),
     }
     decided = right_of_way(building).decide(standings, 0.0)
     assume(decided is not None)

@@ -15,7 +15,7 @@ from mend.errors import ConflictError, NotFoundError
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.requests import RequestStatus
 from mend.robots.base.behaviors.behavior import MEETS_M
-from mend.robots.link.messages import Driven, MakeWay
+from mend.robots.link.messages import BaseLimits, Driven, MakeWay
 from mend.server.fleets import leg_execution
 from mend.server.fleets.fleet_at_work import FleetAtWork
 from mend.server.fleets.fleet_record import FleetRecord
@@ -80,6 +80,9 @@ class FakeSite:
     @property
     def frames(self) -> Mapping[str, Frame]:
         return {}
+
+    def base_of(self, robot: str) -> BaseLimits:  # noqa: ARG002 - all are alike
+        return BaseLimits(radius_m=0.25, speed_m_s=1.0)
 
     def make_way(self, robot: str, told: MakeWay) -> None:
         self.made_way.append((robot, told))

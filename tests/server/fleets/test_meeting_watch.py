@@ -37,6 +37,10 @@ class Met:
     def place_to_rest(self, _decided: Yielding, _standings: object) -> str | None:
         return self.rests_at
 
+    def take_back(self, decided: Yielding, _now_s: float) -> None:
+        self.done.append(f"{decided.robot} does not make way")
+        self.begun.set()
+
     def told(self, decided: Yielding, _now_s: float) -> Sequence[tuple[str, MakeWay]]:
         return [(decided.robot, MakeWay(other=decided.other, until=9.0))]
 
@@ -56,19 +60,27 @@ async def watched(met: Met) -> list[str]:
     running = asyncio.create_task(watch.run())
     watch.take("ada", POSES)
     await met.begun.wait()
-    assert met.done == ["to be journaled"]
+    assert len(met.done) == 1
     met.journal.set()
     for _ in range(20):
         await asyncio.sleep(0)
     running.cancel()
     await asyncio.gather(running, return_exceptions=True)
-    return met.done[1:]
+    return met.done
 
 
 async def test_who_makes_way_hears_of_it_once_it_is_journaled() -> None:
-    assert await watched(Met()) == ["journaled: ada goes to its bay", "ada is told"]
+    assert await watched(Met()) == [
+        "to be journaled",
+        "journaled: ada goes to its bay",
+        "ada is told",
+    ]
 
 
 async def test_who_rests_is_sent_elsewhere_and_told_nothing_else() -> None:
     met = Met(rests_at="F1/parking", rested=True)
-    assert await watched(met) == ["journaled: ada goes to F1/parking"]
+    assert await watched(met) == ["to be journaled", "journaled: ada goes to F1/parking"]
+
+
+async def test_who_rests_and_can_be_sent_nowhere_does_not_make_way() -> None:
+    assert await watched(Met(rested=True)) == ["ada does not make way"]

@@ -4,12 +4,14 @@ import math
 
 from building_bench import made_up
 
-from mend.robots.link.messages import IDENTITY, Poses
+from mend.fleet.right_of_way.right_of_way import AGAIN_S
+from mend.robots.link.messages import IDENTITY, BaseLimits, Poses
 from mend.server.fleets.meetings import PATIENCE_S, Meetings, Occupation
 from mend.tasks.frames import Frame
 
 ROOM, OTHER = "F1/101", "F1/103"
 FRAMES = {"ada": Frame(), "bob": Frame(3.0, -1.0, 1)}
+BASE = BaseLimits(radius_m=0.25, speed_m_s=1.0)
 LATE_S = 40.0
 """The clock of bob is so far ahead."""
 
@@ -20,8 +22,13 @@ class Door:
     def __init__(self, reachable: tuple[str, ...] = ()) -> None:
         self.building = made_up()
         self.occupations = {"ada": Occupation(goal=ROOM), "bob": Occupation(goal=OTHER)}
+        self.bases = {"ada": BASE, "bob": BASE}
         self.meetings = Meetings(
-            self.building, FRAMES, reachable, lambda robot: self.occupations[robot]
+            self.building,
+            FRAMES,
+            reachable,
+            lambda robot: self.occupations[robot],
+            lambda robot: self.bases.get(robot),
         )
         floor = self.building.floors["F1"]
         (ax, ay), (bx, by) = floor.doors["101"].posts
@@ -101,6 +108,24 @@ def test_who_can_be_sent_nowhere_stays_there() -> None:
     decided = door.meetings.decide(standings, 5.0)
     assert decided is not None
     assert door.meetings.place_to_rest(decided, standings) is None
+    assert door.meetings.decide(standings, 5.5) is None
+    door.meetings.take_back(decided, 5.5)
+    assert door.meetings.decide(standings, 5.5 + AGAIN_S / 2.0) is None
+    again = door.meetings.decide(standings, 5.5 + 2.0 * AGAIN_S)
+    assert again is not None
+    assert (again.robot, again.other) == (decided.robot, decided.other)
+
+
+def test_who_does_not_say_how_wide_it_is_is_only_driven_round() -> None:
+    door = Door()
+    del door.bases["bob"]
+    assert door.stand()
+    standings = door.meetings.standings()
+    assert standings["bob"].radius_m == BASE.radius_m
+    assert not standings["bob"].barred
+    decided = door.meetings.decide(standings, 5.0)
+    assert decided is not None
+    assert decided.robot == "ada"
 
 
 def test_nobody_makes_way_for_who_is_at_work_or_gone() -> None:

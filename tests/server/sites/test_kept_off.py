@@ -5,7 +5,15 @@ from collections.abc import Callable
 from typing import Any
 from uuid import UUID
 
-from mend.robots.link.messages import Avoid, ClosedWay, FailedRobot, Hello, MakeWay, NoteTaken
+from mend.robots.link.messages import (
+    Avoid,
+    BaseLimits,
+    ClosedWay,
+    FailedRobot,
+    Hello,
+    MakeWay,
+    NoteTaken,
+)
 from mend.server.runtime.clock import WorldTime
 from mend.server.sites.site import Site
 from mend.tasks.frames import Frame
@@ -52,7 +60,7 @@ def hello(robot: str, *, knows: bool = True, boot: str = "1") -> Hello:
         time=0.0,
         avoids_ways=knows,
         notes_taken=knows,
-        makes_way=knows,
+        base=BaseLimits(radius_m=0.25, speed_m_s=1.0) if knows else None,
     )
 
 

@@ -4,6 +4,7 @@ import pytest
 from building_bench import BuildingBench, made_up
 
 from mend.robots.link.messages import Finished, IssueDetected, MakeWay, WayPoint
+from mend.sim.building.building_robot import LIMITS, RADIUS_M
 from mend.sim.building.floor_pose import FloorPose
 from mend.tasks.frames import frames_of
 
@@ -80,7 +81,9 @@ def test_who_asks_nobody_because_of_another_one_goes_on_once_it_is_gone() -> Non
 def test_it_says_whether_what_it_sees_leaves_it_no_way_on() -> None:
     bench = driving()
     agent = bench.group.agents[0]
-    assert agent.hello("1").makes_way
+    base = agent.hello("1").base
+    assert base is not None
+    assert (base.radius_m, base.speed_m_s) == (RADIUS_M, LIMITS.speed_m_s)
     in_the_door(bench)
     bench.send("robot1", MakeWay(other="robot2", until=1e6))
     while bench.group.time_s() < 10.0:
