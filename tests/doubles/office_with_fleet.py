@@ -1,5 +1,6 @@
 """An office whose robots take requests, with somebody who does whatever they ask."""
 
+import asyncio
 from collections.abc import Mapping
 from typing import Literal
 from uuid import UUID
@@ -29,7 +30,8 @@ async def open_office_with_fleet(
 ) -> UUID:
     """Open a site there; its robots know where they are, and no door is shut.
 
-    `stand`: where some of them begin. `more` are further options of the world.
+    `stand`: where some of them begin. `more` are further options of the world. All have come, and
+    can be sent somewhere.
     """
     scene = scene_of(office(floors), "office", robots)
     scene = scene.model_copy(update={"robots": {**scene.robots, **(stand or {})}})
@@ -44,4 +46,7 @@ async def open_office_with_fleet(
             fleet=FleetOptions(answers=answers),
         )
     )
+    opened, names = service.sites.site(site.id), [each.robot for each in site.robots]
+    while not all(opened.rests(robot) for robot in names):  # noqa: ASYNC110 - nothing tells of it
+        await asyncio.sleep(0.01)
     return site.id
