@@ -1,4 +1,4 @@
-// A question has come: the title counts it, and a page in the background makes itself heard.
+// A question has come: the title counts it, and the page makes itself heard, as nobody may look.
 import { effect, signal, untracked } from "@preact/signals";
 import { notificationsOn, soundOn } from "../state/preferences";
 import { type Question, questions } from "../state/questions";
@@ -24,14 +24,24 @@ effect(() => {
 
 function arrive(question: Question): void {
   newest.value = question;
-  if (document.visibilityState === "visible" && document.hasFocus()) return;
   if (soundOn.value) playChime();
+  if (document.visibilityState === "visible" && document.hasFocus()) return;
   if (!notificationsOn.value || !("Notification" in window) || Notification.permission !== "granted") return;
-  const note = new Notification(`${robotName(question.robot)} asks for help`, {
-    body: `${faultInWords(question)} ${question.prompt?.text ?? ""}`,
-    tag: question.dialogue,
-    icon: "/icon.svg",
-  });
+  notify(question);
+}
+
+function notify(question: Question): void {
+  let note: Notification;
+  try {
+    note = new Notification(`${robotName(question.robot)} asks for help`, {
+      body: `${faultInWords(question)} ${question.prompt?.text ?? ""}`,
+      tag: question.dialogue,
+      icon: "/icon.svg",
+    });
+  } catch {
+    // Browsers of telephones have none from pages, though they say that they may.
+    return;
+  }
   note.onclick = () => {
     window.focus();
     note.close();

@@ -6,6 +6,7 @@ import { QuestionCard } from "./question_card";
 import { queue, shown, stopChoosing } from "./queue";
 import { QueueList } from "./queue_list";
 import { AwaitedHelpCard, TogetherCard } from "./waiting_cards";
+import { AtAGlance } from "./at_a_glance";
 import "./questions_view.css";
 
 export function QuestionsView() {
@@ -20,7 +21,7 @@ export function QuestionsView() {
       <div class="questions-main">
         {question !== null && <QuestionCard key={question.dialogue} question={question} />}
         {question === null && waiting && <Waiting />}
-        {question === null && !waiting && <Nothing />}
+        {question === null && !waiting && <AtAGlance />}
       </div>
       {beside && (
         <aside class="questions-side" aria-label="Also going on">
@@ -41,19 +42,6 @@ function Waiting() {
       {together.value.map((each) => (
         <TogetherCard key={each.dialogue} together={each} />
       ))}
-    </div>
-  );
-}
-
-function Nothing() {
-  return (
-    <div class="nothing">
-      <svg viewBox="0 0 48 48" width="64" height="64" aria-hidden="true">
-        <circle cx="24" cy="24" r="21" />
-        <path d="m14 25 7 7 13-15" />
-      </svg>
-      <p class="nothing-words">No robot asks anything.</p>
-      <p class="quiet">This page tells you when one does. You can leave it open and do something else.</p>
     </div>
   );
 }

@@ -1,6 +1,6 @@
 // The node that is looked at, and the candidates behind the choice of it.
 import { KIND_MEANINGS, plain } from "../tree/words";
-import type { NodeStarted, NodeView } from "../wire/types";
+import type { NodeStarted, NodeView, RunResult } from "../wire/types";
 import { whyChosen } from "./choice";
 import { clock } from "./run_words";
 import "./choice_panel.css";
@@ -12,16 +12,18 @@ interface ChoicePanelProps {
   node: NodeView | null;
   /** Every choice of the node up to the moment, or of any node while none is selected. */
   choices: readonly NodeStarted[];
+  /** Of the run, once it has ended. */
+  result: RunResult | null;
   onChoose: (choice: NodeStarted) => void;
 }
 
-export function ChoicePanel({ node, choices, onChoose }: ChoicePanelProps) {
+export function ChoicePanel({ node, choices, result, onChoose }: ChoicePanelProps) {
   const last = choices.at(-1) ?? null;
   return (
     <section class="panel choice-panel" aria-label="Choice">
       <h2>{node === null ? "The last choice" : `${plain(node.name)} (${KIND_MEANINGS[node.kind]})`}</h2>
       {last === null ? (
-        <p class="quiet small">{node === null ? "Not started yet." : notChosen(node)}</p>
+        <p class="quiet small">{node === null ? "Not started yet." : notChosen(node, result !== null)}</p>
       ) : (
         <Choice choice={last} />
       )}
@@ -40,7 +42,8 @@ export function ChoicePanel({ node, choices, onChoose }: ChoicePanelProps) {
 }
 
 /** Of a node that no robot has started: a goal, or a leaf that waits or that a person does. */
-function notChosen(node: NodeView): string {
+function notChosen(node: NodeView, ended: boolean): string {
+  if (ended && !node.done && !node.abandoned) return "Not done when the run ended.";
   if (node.kind !== "behavior") return goalText(node);
   if (node.owner !== null) return `${node.owner} has taken it.`;
   return node.done ? "Done, and no robot has started it." : "Not started yet.";

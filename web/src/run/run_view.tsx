@@ -4,6 +4,7 @@ import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
 import { later } from "../app/later";
 import { planOf } from "../building/plan";
 import { RunQuestion } from "../question/run_question";
+import { noteKnown } from "../state/failures";
 import { awaitingHelp, questions, together } from "../state/questions";
 import { TreeDrawing } from "../tree/tree_drawing";
 import { nodesOfRun } from "../tree/tree_node";
@@ -38,7 +39,7 @@ const LANE_STEP_S = 0.5;
 export function RunView({ run }: { run: string }) {
   const feed = useFeed(run);
   if (feed === null) return <p class="page quiet">Loading …</p>;
-  return <Followed feed={feed} />;
+  return <Followed run={run} feed={feed} />;
 }
 
 function useFeed(run: string): RunFeed | null {
@@ -51,7 +52,7 @@ function useFeed(run: string): RunFeed | null {
   return feed;
 }
 
-function Followed({ feed }: { feed: RunFeed }) {
+function Followed({ run, feed }: { run: string; feed: RunFeed }) {
   const { history, moment } = feed;
   const version = feed.version.value;
   usePlaying(feed.moment);
@@ -64,6 +65,10 @@ function Followed({ feed }: { feed: RunFeed }) {
   }).value;
   const state = useMemo(() => history.stateAfter(Math.max(count, 1)), [history, count, version]);
   const latest = history.stateAfter(history.events.length);
+  const seenToFail = feed.failure.value !== null || latest?.status === "failed";
+  useEffect(() => {
+    if (seenToFail) noteKnown(run);
+  }, [run, seenToFail]);
   if (feed.failure.value !== null) return <NotThere reason={feed.failure.value} />;
   if (state === null || latest === null) return <p class="page quiet">Loading …</p>;
   return <Shown feed={feed} version={version} state={state} latest={latest} />;
@@ -124,16 +129,17 @@ function Shown({ feed, version, state, latest }: ShownProps) {
         views={views}
         people={state.people}
         talkedAbout={talkedAbout}
+        result={state.result}
         selected={selected}
         onSelect={setSelected}
       />
     ),
-    [views, state.people, talkedAbout, selected],
+    [views, state.people, talkedAbout, state.result, selected],
   );
   const chosen = views.find((view) => view.node === selected) ?? null;
   const choice = (
     <div class="run-choice">
-      <ChoicePanel node={chosen} choices={choices} onChoose={goToEvent} />
+      <ChoicePanel node={chosen} choices={choices} result={state.result} onChoose={goToEvent} />
       {(state.people.size > 0 || !ended(latest.status)) && (
         <Leaves
           run={state.started.run}
@@ -232,14 +238,19 @@ interface TreePanelProps {
   views: readonly NodeView[];
   people: RunState["people"];
   talkedAbout: ReadonlySet<string>;
+  result: RunState["result"];
   selected: string | null;
   onSelect: (path: string | null) => void;
 }
 
-function TreePanel({ name, views, people, talkedAbout, selected, onSelect }: TreePanelProps) {
-  const nodes = useMemo(() => nodesOfRun(views, talkedAbout, people), [views, talkedAbout, people]);
+function TreePanel({ name, views, people, talkedAbout, result, selected, onSelect }: TreePanelProps) {
+  const nodes = useMemo(
+    () => nodesOfRun(views, talkedAbout, people, result),
+    [views, talkedAbout, people, result],
+  );
   const active = nodes.find((node) => node.kind === "behavior" && node.state === "active");
-  const focus = nodes.find((node) => node.state === "in_dialogue") ?? active;
+  const asksOrFailed = nodes.find((node) => node.state === "in_dialogue" || node.state === "failed");
+  const focus = asksOrFailed ?? active;
   return (
     <section class="panel run-tree">
       <h2>Task tree</h2>

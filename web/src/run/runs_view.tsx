@@ -1,14 +1,12 @@
 // The list of runs, newest first, by state.
 import { signal } from "@preact/signals";
-import { useEffect, useState } from "preact/hooks";
 import { may } from "../state/access";
 import { questions } from "../state/questions";
+import { useNow } from "../state/use_now";
 import type { RunStatus, RunSummary } from "../wire/types";
 import { useRunsPage } from "./runs_page";
 import { ago, moment, outcome, STATUS_SIGNS, STATUS_WORDS } from "./run_words";
 import "./runs.css";
-
-const AGAIN_MS = 30_000;
 
 interface Filter {
   name: string;
@@ -141,13 +139,4 @@ function Paging({ more }: { more: boolean }) {
       </button>
     </nav>
   );
-}
-
-function useNow(): number {
-  const [now, setNow] = useState(Date.now);
-  useEffect(() => {
-    const timer = window.setInterval(() => setNow(Date.now()), AGAIN_MS);
-    return () => window.clearInterval(timer);
-  }, []);
-  return now;
 }

@@ -21,7 +21,7 @@ export function Notifications() {
             notificationsOn.value = event.currentTarget.checked;
           }}
         />
-        Show a desktop notification
+        Show a desktop notification while this page is in the background
       </label>
     );
   }

@@ -39,7 +39,7 @@ export function SettingsView() {
       </div>
       <AnswerKeys />
       <section class="panel setting-group" aria-labelledby="arrival-title">
-        <h2 id="arrival-title">When a question comes in the background</h2>
+        <h2 id="arrival-title">When a question comes</h2>
         <label class="choice">
           <input
             type="checkbox"

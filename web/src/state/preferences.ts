@@ -28,6 +28,8 @@ export const keys = kept<Keys>("keys", DEFAULT_KEYS);
 export const keysOn = kept("keys_on", true);
 export const soundOn = kept("sound_on", true);
 export const voice = kept<Voice>("voice", "service");
+/** The runs that ended badly which were looked at, or put aside, on this device; the latest last. */
+export const knownFailures = kept<readonly string[]>("known_failures", []);
 export const notificationsOn = kept("notifications_on", false);
 
 effect(() => {

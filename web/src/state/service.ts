@@ -20,6 +20,8 @@ export const lostSince = signal<number | null>(null);
 /** Why the service cannot keep what happens, so that no run goes on; null while it can. */
 export const trouble = signal<string | null>(null);
 export const runs = signal<ReadonlyMap<string, RunSummary>>(new Map());
+/** Whether the newest runs were read, as they are now. */
+export const runsRead = signal(false);
 
 const STATUS_AFTER: Readonly<Partial<Record<Event["type"], RunStatus>>> = {
   run_paused: "paused",
@@ -147,7 +149,9 @@ function takeEvent(event: Told): void {
 
 /** Read the list of runs anew. */
 export async function refreshRuns(): Promise<void> {
-  const read = await rest.runs().catch(() => []);
+  const read = await rest.runs().catch(() => null);
+  runsRead.value = read !== null;
+  if (read === null) return;
   const next = new Map(runs.value);
   for (const run of read) next.set(run.id, run);
   runs.value = next;

@@ -38,6 +38,13 @@ const STATE_SIGNS: Readonly<Record<NodeState, ComponentChildren>> = {
     </>
   ),
   abandoned: <path d="M5 5l10 10M15 5L5 15" />,
+  failed: (
+    <>
+      <circle class="solid" cx="10" cy="10" r="8" />
+      <path class="cut-line" d="M7 7l6 6M13 7l-6 6" />
+    </>
+  ),
+  left: <path d="M5 10h10" />,
 };
 
 export function KindSign({ kind, x, y }: { kind: Exclude<NodeKind, "behavior">; x: number; y: number }) {

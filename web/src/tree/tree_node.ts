@@ -1,9 +1,10 @@
 // One node of a task tree as it is drawn: from a run at some moment, or from a definition alone.
-import type { NodeView } from "../wire/types";
+import type { NodeView, RunResult } from "../wire/types";
 
 export type NodeKind = NodeView["kind"];
 
-export type NodeState = "waiting" | "eligible" | "active" | "in_dialogue" | "done" | "abandoned";
+/** `failed` and `left`: what could not be done, and what is not done, once a run has ended. */
+export type NodeState = "waiting" | "eligible" | "active" | "in_dialogue" | "done" | "abandoned" | "failed" | "left";
 
 /** Nodes stand depth first; `path` is that of child indices from the root (`/` is the root). */
 export interface TreeNode {
@@ -22,18 +23,19 @@ export interface TreeNode {
   attempts: number;
 }
 
-/** The nodes of a run, from what the service or the fold says of them. */
+/** The nodes of a run, from what the service or the fold says of them; `result` once it has ended. */
 export function nodesOfRun(
   views: readonly NodeView[],
   inDialogue: ReadonlySet<string>,
   people: ReadonlyMap<string, unknown> = new Map(),
+  result: Pick<RunResult, "node"> | null = null,
 ): TreeNode[] {
   return views.map((view) => ({
     path: view.node,
     kind: view.kind,
     name: view.name,
     behavior: view.behavior,
-    state: stateOf(view, inDialogue),
+    state: result === null ? stateOf(view, inDialogue) : stateAtEnd(view, result),
     level: view.activation_level,
     potential: view.activation_potential,
     owner: view.owner,
@@ -48,6 +50,13 @@ function stateOf(view: NodeView, inDialogue: ReadonlySet<string>): NodeState {
   if (inDialogue.has(view.node)) return "in_dialogue";
   if (view.active) return "active";
   return view.activation_level > 0 ? "eligible" : "waiting";
+}
+
+/** Nothing waits any more, and nobody is at anything. */
+function stateAtEnd(view: NodeView, result: Pick<RunResult, "node">): NodeState {
+  if (view.done) return "done";
+  if (view.abandoned) return "abandoned";
+  return view.node === result.node ? "failed" : "left";
 }
 
 /** The nodes of a checked definition in its JSON form, as of `DocumentView.definition`. */

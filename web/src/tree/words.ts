@@ -29,6 +29,8 @@ export const STATE_WORDS: Readonly<Record<NodeState, string>> = {
   in_dialogue: "in dialogue",
   done: "done",
   abandoned: "abandoned",
+  failed: "failed",
+  left: "not done",
 };
 
 /** The word under a node: who does what is active, where that is a person. */

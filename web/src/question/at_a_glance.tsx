@@ -1,0 +1,95 @@
+// Where no robot asks anything: whether the runs go on, what has failed, and which robots are gone.
+import { useEffect, useState } from "preact/hooks";
+import { ago, outcome, sentence } from "../run/run_words";
+import { noteKnown } from "../state/failures";
+import { knownFailures } from "../state/preferences";
+import { connection, onEvent, onSnapshot, runs, runsRead, trouble } from "../state/service";
+import { useNow } from "../state/use_now";
+import { plain, withoutRun } from "../tree/words";
+import * as rest from "../wire/rest";
+import type { Event, RobotView, RunSummary } from "../wire/types";
+import { glanceOf, type Sign } from "./glance";
+import "./at_a_glance.css";
+
+const COMES_OR_GOES: ReadonlySet<Event["type"]> = new Set(["robot_lost", "robot_back", "run_started"]);
+
+const SIGNS: Readonly<Record<Sign, string>> = {
+  well: "m14 25 7 7 13-15",
+  idle: "M14 24h20",
+  bad: "M24 12v15M24 33v2",
+  unknown: "M18 19a6 6 0 1 1 8.500 5.500c-2 1-2.500 2-2.500 4M24 34v1",
+};
+
+export function AtAGlance() {
+  const robots = useRobots();
+  const now = useNow();
+  const seen = { connection: connection.value, trouble: trouble.value, known: knownFailures.value };
+  const { sign, words, more, failures, lost } = glanceOf({
+    ...seen,
+    runs: runsRead.value ? [...runs.value.values()] : null,
+    robots,
+    now,
+  });
+  return (
+    <div class="glance">
+      <svg class={sign} viewBox="0 0 48 48" width="64" height="64" aria-hidden="true">
+        <circle cx="24" cy="24" r="21" />
+        <path d={SIGNS[sign]} />
+      </svg>
+      <p class="glance-words">{words}</p>
+      {failures.length + lost.length > 0 && (
+        <ul class="glance-bad">
+          {lost.map((each) => (
+            <Lost key={each.robot} robot={each} />
+          ))}
+          {failures.map((each) => (
+            <Failure key={each.id} run={each} now={now} />
+          ))}
+        </ul>
+      )}
+      <p class="quiet">
+        {more} This page tells you when a robot asks. You can leave it open and do something else.
+      </p>
+    </div>
+  );
+}
+
+function Lost({ robot }: { robot: RobotView }) {
+  return (
+    <li>
+      <a href={`/runs/${robot.run}`}>
+        <strong>{withoutRun(robot.robot)}</strong> is gone, and its run waits for it.
+      </a>
+    </li>
+  );
+}
+
+function Failure({ run, now }: { run: RunSummary; now: number }) {
+  const what = run.status === "failed" ? "failed" : "cannot be read";
+  return (
+    <li>
+      <a href={`/runs/${run.id}`}>
+        <strong>{plain(run.tree)}</strong> {what} {ago(Date.parse(run.ended ?? run.started), now)}. {run.result !== null && sentence(outcome(run))}
+      </a>
+      <button type="button" class="button" aria-label={`Put aside: ${plain(run.tree)}`} onClick={() => noteKnown(run.id)}>
+        ✕
+      </button>
+    </li>
+  );
+}
+
+/** All robots; none where this helper may not see them. */
+function useRobots(): readonly RobotView[] {
+  const [robots, setRobots] = useState<readonly RobotView[]>([]);
+  useEffect(() => {
+    let current = true;
+    const read = () => void rest.robots().then((found) => current && setRobots(found), () => undefined);
+    const stop = [onSnapshot(read), onEvent((event) => COMES_OR_GOES.has(event.type) && read())];
+    read();
+    return () => {
+      current = false;
+      stop.forEach((each) => each());
+    };
+  }, []);
+  return robots;
+}

@@ -1,0 +1,59 @@
+// What there is to say where no robot asks anything: nothing is called well that is not seen to be.
+import type { ConnectionState } from "../wire/helper_socket";
+import type { RobotView, RunSummary } from "../wire/types";
+
+const FRESH_MS = 24 * 3_600_000;
+
+export type Sign = "well" | "idle" | "bad" | "unknown";
+
+export interface Glance {
+  readonly sign: Sign;
+  readonly words: string;
+  /** What else there is to know, in a sentence. */
+  readonly more: string;
+  /** Runs that ended badly, which nobody here has looked at. */
+  readonly failures: readonly RunSummary[];
+  /** Robots that runs wait for. */
+  readonly lost: readonly RobotView[];
+}
+
+export interface Seen {
+  readonly connection: ConnectionState;
+  /** Why the service cannot keep what happens; null while it can. */
+  readonly trouble: string | null;
+  /** The newest runs, and those that go on; null until they were read. */
+  readonly runs: readonly RunSummary[] | null;
+  readonly robots: readonly RobotView[];
+  readonly known: readonly string[];
+  readonly now: number;
+}
+
+export function glanceOf({ connection, trouble, runs, robots, known, now }: Seen): Glance {
+  if (connection !== "connected" || runs === null) {
+    const more = connection === "connected" ? "Reading what the runs do." : "Questions may wait that are not seen here.";
+    return { sign: "unknown", words: "Not known whether a robot asks anything.", more, failures: [], lost: [] };
+  }
+  const goingOn = runs.filter(({ status }) => status === "running" || status === "paused");
+  const failures = runs.filter((each) => hasJustFailed(each, now) && !known.includes(each.id));
+  const waitedFor = new Set(goingOn.map(({ id }) => id));
+  const lost = robots.filter(({ state, run }) => state === "lost" && run !== null && waitedFor.has(run));
+  const more = goingOnWords(goingOn);
+  if (failures.length + lost.length > 0 || trouble !== null) {
+    return { sign: "bad", words: "No robot asks anything, but not all is well.", more, failures, lost };
+  }
+  const sign = goingOn.length > 0 ? "well" : "idle";
+  return { sign, words: "No robot asks anything.", more, failures, lost };
+}
+
+/** Whether a run has ended badly within a day. */
+function hasJustFailed({ status, ended }: RunSummary, now: number): boolean {
+  return (status === "failed" || status === "unreadable") && (ended === null || now - Date.parse(ended) < FRESH_MS);
+}
+
+function goingOnWords(runs: readonly RunSummary[]): string {
+  if (runs.length === 0) return "No run goes on.";
+  const paused = runs.filter(({ status }) => status === "paused").length;
+  const all = runs.length === 1 ? "One run goes on" : `${runs.length} runs go on`;
+  if (paused === 0) return `${all}.`;
+  return runs.length === paused ? `${all}, paused.` : `${all}, ${paused} of them paused.`;
+}
