@@ -186,7 +186,7 @@ def described_app(lifespan: Lifespan | None = None) -> FastAPI:
     )
     for module in ROUTES:
         app.include_router(module.router)
-    answer_errors_with_problems(app)
+    answer_errors_with_problems(app, console.page_of_nothing)
     _describe(app)
     return app
 

@@ -2,7 +2,7 @@
 
 import json
 import logging
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from http import HTTPStatus
 from typing import Any, cast
 from uuid import UUID
@@ -153,8 +153,19 @@ def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
     }
 
 
-def answer_errors_with_problems(app: FastAPI) -> None:
-    """Make every error of an application a problem document."""
+def answer_errors_with_problems(
+    app: FastAPI, page_of_nothing: Callable[[Request], Response | None]
+) -> None:
+    """Make every error of an application a problem document.
+
+    Of an address where there is nothing it may be a page instead, for those who look for pages.
+    """
+
+    async def _http_error(request: Request, error: Exception) -> Response:
+        assert isinstance(error, HTTPException)
+        page = page_of_nothing(request) if error.status_code == 404 else None
+        return page or _http_problem(request, error)
+
     app.add_exception_handler(HTTPException, _http_error)
     app.add_exception_handler(RequestValidationError, _validation_error)
     app.add_exception_handler(ProblemError, _problem_error)
@@ -163,8 +174,7 @@ def answer_errors_with_problems(app: FastAPI) -> None:
     app.add_exception_handler(Exception, _defect)
 
 
-async def _http_error(request: Request, error: Exception) -> Response:
-    assert isinstance(error, HTTPException)
+def _http_problem(request: Request, error: HTTPException) -> Response:
     details = {
         404: f"there is nothing at {request.url.path}",
         405: f"{request.method} is not possible at {request.url.path}",

@@ -60,3 +60,10 @@ async def test_what_goes_on_is_told(service: Service, open_page: OpenPage) -> No
     page = await open_page()
     await service.runtime.start_run(RunRequest(tree="tea_table", world="tabletop", speed=0.01))
     await expect(page.get_by_text("One run goes on.")).to_be_visible()
+
+
+async def test_an_address_where_there_is_nothing_says_so(open_page: OpenPage) -> None:
+    page = await open_page("/x/y")
+    await expect(page.get_by_role("heading", name="There is nothing at /x/y")).to_be_visible()
+    await page.goto(page.url.replace("/x/y", "/runs/x"))
+    await expect(page.get_by_text("There is no run “x”.")).to_be_visible()

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Annotated
 
 from fastapi import APIRouter, Header
+from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, Response
 
 from mend.errors import NotFoundError
@@ -34,6 +35,8 @@ CHECK_AGAIN = {"Cache-Control": "no-cache"}
 # The names of assets carry a hash of what is in them.
 KEEP = {"Cache-Control": "public, max-age=31536000, immutable"}
 
+NO_VIEWS = ("/api/", "/ws/", "/assets/")
+
 NOT_BUILT = (
     "<!doctype html><title>Mend</title><p>The console is not built here. Run <code>make console"
     "</code> in the project's folder; the service itself works without it.</p>"
@@ -63,6 +66,16 @@ async def view(accept_encoding: Accepted = "") -> Response:
     return _file("index.html", accept_encoding, CHECK_AGAIN)
 
 
+def page_of_nothing(request: Request) -> Response | None:
+    """The page that says in words that there is nothing at an address; None for other programs."""
+    asks_for_page = request.method == "GET" and "text/html" in request.headers.get("accept", "")
+    if not asks_for_page or request.url.path.startswith(NO_VIEWS):
+        return None
+    if not (BUILT / "index.html").is_file():
+        return None
+    return _file("index.html", request.headers.get("accept-encoding", ""), CHECK_AGAIN, 404)
+
+
 @router.get("/assets/{name}")
 async def asset(name: str, accept_encoding: Accepted = "") -> Response:
     """A part of the page."""
@@ -75,7 +88,7 @@ async def icon(accept_encoding: Accepted = "") -> Response:
     return _file("icon.svg", accept_encoding, CHECK_AGAIN)
 
 
-def _file(name: str, accept_encoding: str, caching: dict[str, str]) -> Response:
+def _file(name: str, accept_encoding: str, caching: dict[str, str], status: int = 200) -> Response:
     path = BUILT / name
     media_type = TYPES.get(path.suffix)
     if media_type is None or not path.is_file():
@@ -84,4 +97,4 @@ def _file(name: str, accept_encoding: str, caching: dict[str, str]) -> Response:
     compressed = path.with_name(f"{path.name}.gz")
     if "gzip" in accept_encoding and compressed.is_file():
         path, headers = compressed, headers | {"Content-Encoding": "gzip"}
-    return FileResponse(path, media_type=media_type, headers=headers)
+    return FileResponse(path, status, headers=headers, media_type=media_type)

@@ -52,7 +52,7 @@ export function openRun(run: string): RunFeed {
       failure.value = null;
     } catch (error) {
       // What is there stays: the connection comes back with a snapshot, and then it is read again.
-      if (history.events.length === 0) failure.value = (error as Error).message;
+      if (history.events.length === 0) failure.value = whyNot(run, error as Error);
     }
     reading = false;
     draw();
@@ -77,4 +77,10 @@ export function openRun(run: string): RunFeed {
       cancelAnimationFrame(frame);
     },
   };
+}
+
+function whyNot(run: string, error: Error): string {
+  // An id that is none, and one that no run has, are the same to whoever typed it.
+  const none = error instanceof rest.Refusal && (error.status === 404 || error.status === 422);
+  return none ? `There is no run “${run}”.` : error.message;
 }
