@@ -74,7 +74,7 @@ class DialogueDriver:
         make = DialogueEvents(self._context.stamp, uuid4(), raised)
         turns = rehearse(state.scripts[raised.issue], raised, ["open"], outlook)
         said = self._of_turns(make, turns, "", waits=raised.interrupts, stopped=None)
-        return [raised, make.opened(), *said]
+        return [raised, make.opened(scripted=not self._answers.live), *said]
 
     async def drive(self, dialogue: DialogueState, proxy: RobotProxy) -> bool:
         """Do what the dialogue needs now; True if that changed the state."""

@@ -28,8 +28,8 @@ class DialogueEvents:
     def _fields(self) -> dict[str, Any]:
         return {**self._stamp(), **self._node, **self._issue, "dialogue": self._dialogue}
 
-    def opened(self) -> ev.DialogueOpened:
-        return ev.DialogueOpened(**self._fields())
+    def opened(self, *, scripted: bool) -> ev.DialogueOpened:
+        return ev.DialogueOpened(**self._fields(), scripted=scripted)
 
     def say(self, say: Remark) -> ev.Prompt:
         return ev.Prompt(**self._fields(), prompt=uuid4(), version=1, kind="say", text=say.text)

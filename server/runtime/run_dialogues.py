@@ -8,6 +8,7 @@ from uuid import UUID
 from mend.errors import ConflictError
 from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
+from mend.server.runtime.dialogue_state import DialogueState
 from mend.server.runtime.run import Run
 from mend.server.runtime.run_states import RunStates
 from mend.server.runtime.run_views import dialogue_view
@@ -55,7 +56,7 @@ class RunDialogues:
 
         Raises `NotFoundError`, `LostRaceError` or `ConflictError`.
         """
-        found = await self._states.find_dialogue(dialogue)
+        found = await self._put_to_people(dialogue)
         try:
             run = await self._running(found.opened.run)
             proxy = run.proxies[found.opened.robot]
@@ -73,7 +74,7 @@ class RunDialogues:
         self, dialogue: UUID, prompt: UUID, helper: str, author: ev.Author | None = None
     ) -> ev.DeadlineExtended:
         """Give the open question more time. Raises `NotFoundError` or `ConflictError`."""
-        found = await self._states.find_dialogue(dialogue)
+        found = await self._put_to_people(dialogue)
         run = await self._running(found.opened.run)
         extended = await run.request(lambda: run.dialogues.extend(found, prompt, helper, author))
         return cast(ev.DeadlineExtended, extended)
@@ -90,7 +91,7 @@ class RunDialogues:
 
         Raises `ConflictError` while another is, unless it is taken over from them.
         """
-        found = await self._states.find_dialogue(dialogue)
+        found = await self._put_to_people(dialogue)
         run = await self._running(found.opened.run)
         await run.request(
             lambda: run.claims.claim(found, helper, take_over=take_over, author=author)
@@ -105,3 +106,11 @@ class RunDialogues:
         run = await self._running(found.opened.run)
         await run.request(lambda: run.claims.release(found, helper, author))
         return dialogue_view(found)
+
+    async def _put_to_people(self, dialogue: UUID) -> DialogueState:
+        found = await self._states.find_dialogue(dialogue)
+        if found.opened.scripted:
+            raise ConflictError(
+                "the script of this run answers its questions: people are not asked"
+            )
+        return found

@@ -167,6 +167,7 @@ def dialogue_view(dialogue: DialogueState) -> DialogueView:
         robot=opened.robot,
         node=opened.node,
         name=opened.name,
+        scripted=opened.scripted,
         prompt=None
         if prompt is None
         else PromptView(

@@ -74,7 +74,10 @@ class AwaitedHelp(View):
 
 
 class DialogueView(View):
-    """One dialogue. `prompt` is the latest; it is open while `status` is and it is an ask."""
+    """One dialogue. `prompt` is the latest; it is open while `status` is and it is an ask.
+
+    `scripted`: the run's script answers, and people are not asked.
+    """
 
     dialogue: UUID
     run: UUID
@@ -85,6 +88,7 @@ class DialogueView(View):
     robot: str
     node: str
     name: str
+    scripted: bool = False
     prompt: PromptView | None
     awaiting: Literal["answer", "help"] | None
     answered_by: str | None

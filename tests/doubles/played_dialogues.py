@@ -89,7 +89,7 @@ class PlayedDialogues(FakeRuns):
         jpegs = {each: _jpeg(number) for number, each in enumerate(pictures)}
         await self._journal.append(Entry(events=(raised,), pictures=jpegs))
         self._change(dialogue, clip=clip.pictures)
-        await self._go_on(dialogue, "open", [played.make.opened()])
+        await self._go_on(dialogue, "open", [played.make.opened(scripted=False)])
         await self.commit(clip)
         return dialogue
 

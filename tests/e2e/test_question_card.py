@@ -75,3 +75,18 @@ async def test_a_question_is_heard_though_the_page_is_in_front(
     assert await page.evaluate("document.visibilityState === 'visible' && document.hasFocus()")
     await stage.runs.open(stage.run, "dropped")
     await page.wait_for_function("window.tones > 0")
+
+
+async def test_nobody_is_called_to_a_run_that_a_script_answers(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await open_page()
+    await page.evaluate(COUNT_TONES)
+    answers = ["silence"] * 9
+    request = RunRequest(tree="eket", world="tabletop", speed=5.0, answers=answers, max_attempts=1)
+    run = await service.runtime.start_run(request)
+    steal = Intervention.model_validate({"act": "steal", "object": "green_leg"})
+    await service.runtime.intervene(run.id, steal)
+    await expect(page.get_by_text("not all is well")).to_be_visible()
+    assert await page.title() == "Mend"
+    assert await page.evaluate("window.tones") == 0

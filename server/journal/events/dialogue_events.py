@@ -31,9 +31,10 @@ class DialogueEvent(NodeEvent):
 
 
 class DialogueOpened(DialogueEvent):
-    """A dialogue began."""
+    """A dialogue began; `scripted`: the run's script answers, and people are not asked."""
 
     type: Literal["dialogue_opened"] = "dialogue_opened"
+    scripted: bool = False
 
 
 class Prompt(DialogueEvent):

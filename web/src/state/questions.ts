@@ -31,8 +31,10 @@ const open = signal<ReadonlyMap<string, Question>>(new Map());
 const raised = new Map<string, IssueRaised>();
 const resolutions = new Map<string, Resolution>();
 
-/** Every open dialogue, oldest first. */
-export const dialogues = computed(() => [...open.value.values()].sort((a, b) => a.opened - b.opened));
+/** Every open dialogue in which people are asked, oldest first. */
+export const dialogues = computed(() =>
+  [...open.value.values()].filter((each) => !each.scripted).sort((a, b) => a.opened - b.opened),
+);
 
 /** Those that wait for an answer, oldest first. */
 export const questions = computed(() => dialogues.value.filter(isAsked));
@@ -63,7 +65,7 @@ export function takeDialogues(views: readonly DialogueView[], runTimes: Readonly
   }
   open.value = next;
   for (const gone of before.values()) {
-    if (!next.has(gone.dialogue)) void tellHowItEnded(gone);
+    if (!next.has(gone.dialogue) && !gone.scripted) void tellHowItEnded(gone);
   }
 }
 
@@ -107,7 +109,7 @@ function change(before: Question, event: Extract<Event, { dialogue: string | nul
       return;
     }
     case "answered":
-      if (event.helper !== me) {
+      if (event.helper !== me && !before.scripted) {
         tellEnding(before, `${event.helper} answered ${event.answer.toUpperCase()}.`);
       }
       put({ ...before, awaiting: null, answered_by: event.helper });
@@ -166,6 +168,7 @@ function opened(event: Extract<Event, { type: "dialogue_opened" }>): Question {
     robot: event.robot,
     node: event.node,
     name: event.name,
+    scripted: event.scripted,
     prompt: null,
     awaiting: null,
     answered_by: null,
@@ -181,10 +184,10 @@ function opened(event: Extract<Event, { type: "dialogue_opened" }>): Question {
 
 function close(question: Question, reason: Extract<Event, { type: "dialogue_closed" }>["reason"]): void {
   const statement = question.prompt?.kind === "say" ? question.prompt : null;
-  if (resolutions.get(question.dialogue) === "collab_finish" && statement !== null) {
+  if (resolutions.get(question.dialogue) === "collab_finish" && statement !== null && !question.scripted) {
     const { prompt, text } = statement;
     together.value = [...together.value, { ...question, prompt, text }];
-  } else {
+  } else if (!question.scripted) {
     tellEnding(question, closing(reason, statement?.text ?? null));
   }
   resolutions.delete(question.dialogue);
