@@ -109,6 +109,7 @@ async def test_card_closes_by_itself_and_says_why(stage: Stage, call: str, words
     await stage.runs.call(dialogue, call)
     told = page.get_by_role("status", name="What became of questions")
     await expect(told).to_contain_text(words)
+    await expect(told).to_contain_text("yellow bar")
     await expect(page.locator(".answer")).to_have_count(0)
     await told.get_by_role("button", name="Dismiss").click()
     await expect(told).to_be_empty()

@@ -1,5 +1,6 @@
 // Says why a card has closed; the region is always there, so that it is read out.
 import { dismissEnding, endings } from "../state/endings";
+import { plain } from "../tree/words";
 import { robotName } from "./fault_words";
 import "./endings_list.css";
 
@@ -10,7 +11,9 @@ export function Endings({ run }: { run?: string }) {
       {told.map((each) => (
         <div key={each.id} class="ending">
           <p>
-            <strong>{robotName(each.robot)}:</strong> {each.text}
+            <strong>
+              {robotName(each.robot)}, {plain(each.about)}:
+            </strong> {each.text}
           </p>
           <button type="button" class="button quiet-button" aria-label="Dismiss" onClick={() => dismissEnding(each.id)}>
             ✕

@@ -8,6 +8,8 @@ export interface Ending {
   dialogue: string;
   run: string;
   robot: string;
+  /** The part that it was about; else what the leaf is called. */
+  about: string;
   text: string;
 }
 
@@ -19,10 +21,13 @@ export const endings = signal<readonly Ending[]>([]);
 let count = 0;
 
 /** Say how a question ended, or what became of an answer to it. */
-export function tellEnding(about: Pick<DialogueView, "dialogue" | "run" | "robot">, text: string): void {
-  const ending = { id: ++count, dialogue: about.dialogue, run: about.run, robot: about.robot, text };
+export function tellEnding(
+  { dialogue, run, robot, object, name }: Pick<DialogueView, "dialogue" | "run" | "robot" | "object" | "name">,
+  text: string,
+): void {
+  const ending = { id: ++count, dialogue, run, robot, about: object ?? name, text };
   // One line a dialogue: what came last says all.
-  const others = endings.value.filter((each) => each.dialogue !== about.dialogue);
+  const others = endings.value.filter((each) => each.dialogue !== dialogue);
   endings.value = [...others, ending].slice(-MOST);
   window.setTimeout(() => dismissEnding(ending.id), SHOWN_MS);
 }
