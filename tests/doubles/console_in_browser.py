@@ -9,6 +9,16 @@ from playwright.async_api import Page
 
 TOKEN = "correct-horse-battery"
 
+COUNT_TONES = """() => {
+  window.tones = 0;
+  const start = OscillatorNode.prototype.start;
+  OscillatorNode.prototype.start = function (...given) {
+    window.tones += 1;
+    return start.apply(this, given);
+  };
+}"""
+"""Evaluated in a page: from then on `window.tones` counts the tones that it plays."""
+
 OpenPage = Callable[..., Awaitable[Page]]
 """`await open_page(path, helper=name, **context_options)`: a helper who has signed in."""
 

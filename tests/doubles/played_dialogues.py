@@ -55,6 +55,8 @@ class PlayedDialogues(FakeRuns):
         self._played: dict[UUID, Played] = {}
         self._won: dict[UUID, str] = {}
         self.deadline_s = 60.0
+        self.to: str | None = None
+        """Whom questions are put to, from now on."""
 
     async def open(self, run: UUID, kind: str, part: str = "yellow_bar") -> UUID:
         """A robot detects a fault of `kind`, with a picture and a clip; the dialogue's id."""
@@ -137,7 +139,7 @@ class PlayedDialogues(FakeRuns):
         script = self._scripts[played.raised.issue]
         turns = rehearse(script, played.raised, played.calls, Outlook())
         ask = next(each for each in turns if isinstance(each, Ask))
-        again = played.make.repeat(played.asked, ask, self._deadline(), None, ask.timeout_effect)
+        again = played.make.repeat(played.asked, ask, self._deadline(), self.to, ask.timeout_effect)
         await self._commit(dialogue, [again])
 
     async def release_expired(self, dialogue: UUID, helper: str) -> None:
@@ -169,7 +171,7 @@ class PlayedDialogues(FakeRuns):
             turns,
             ask_deadline=self._deadline(),
             if_silent="",
-            to=None,
+            to=self.to,
             help_until=self._deadline(),
             helper=played.helper,
             stopped=None,

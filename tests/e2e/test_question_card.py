@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from console_in_browser import OpenPage, Stage
+from console_in_browser import COUNT_TONES, OpenPage, Stage
 from playwright.async_api import expect
 
 from mend.server.composition import Service
@@ -54,16 +54,6 @@ async def test_fault_of_a_robot_is_told_in_plain_words_with_its_picture(
     await expect(page.locator(".overlay .expected")).to_be_visible()
     await expect(page.get_by_role("tree")).to_contain_text("pink bar")
     await expect(page.get_by_role("slider", name="Moment before the fault")).to_be_visible()
-
-
-COUNT_TONES = """() => {
-  window.tones = 0;
-  const start = OscillatorNode.prototype.start;
-  OscillatorNode.prototype.start = function (...given) {
-    window.tones += 1;
-    return start.apply(this, given);
-  };
-}"""
 
 
 async def test_a_question_is_heard_though_the_page_is_in_front(

@@ -3,7 +3,7 @@
 import asyncio
 
 import pytest
-from console_in_browser import Stage
+from console_in_browser import COUNT_TONES, Stage
 from playwright.async_api import expect
 
 pytestmark = pytest.mark.asyncio(loop_scope="session")
@@ -62,3 +62,24 @@ async def test_of_two_helpers_who_race_one_wins_and_the_other_is_told(stage: Sta
         await stage.runs.see(dialogue)
         for page in (anna, bob):
             await expect(page.get_by_text("No robot asks anything")).to_be_visible()
+
+
+async def test_who_is_asked_is_called_and_the_others_see_it_and_may_take_it(stage: Stage) -> None:
+    anna, bob = await stage.open_page(), await stage.open_page(helper="bob")
+    for page in (anna, bob):
+        await page.evaluate(COUNT_TONES)
+    stage.runs.to = "anna"
+    dialogue = await stage.runs.open(stage.run, "dropped")
+    await expect(anna.get_by_text("You are asked now.")).to_be_visible()
+    await expect(bob.get_by_text("anna is asked now.")).to_be_visible()
+    await expect(anna).to_have_title("(1) Mend")
+    await expect(bob).to_have_title("Mend")
+    await anna.wait_for_function("window.tones > 0")
+    assert await bob.evaluate("window.tones") == 0
+    stage.runs.to = "bob"
+    await stage.runs.ask_again(dialogue)
+    await expect(bob.get_by_text("You are asked now.")).to_be_visible()
+    await bob.wait_for_function("window.tones > 0")
+    await expect(anna.get_by_text("bob is asked now.")).to_be_visible()
+    await anna.get_by_role("button", name="Take it").click()
+    await expect(bob.get_by_text("anna is answering.")).to_be_visible()

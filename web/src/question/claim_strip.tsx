@@ -3,22 +3,12 @@ import { may } from "../state/access";
 import { helperName } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { claim, release } from "./claiming";
+import { askedNow } from "./turn";
 import "./claim_strip.css";
 
 export function ClaimStrip({ question }: { question: Question }) {
   const { claimed_by: by, dialogue } = question;
-  if (by === null) {
-    return (
-      <div class="claim">
-        <p class="quiet">Nobody is on it yet.</p>
-        {may("helper") && (
-          <button type="button" class="button" onClick={() => void claim(dialogue, false)}>
-            I am on it
-          </button>
-        )}
-      </div>
-    );
-  }
+  if (by === null) return <NobodyOnIt question={question} />;
   const mine = by === helperName.value;
   return (
     <div class={`claim ${mine ? "mine" : "others"}`}>
@@ -36,6 +26,22 @@ export function ClaimStrip({ question }: { question: Question }) {
       {!mine && may("helper") && (
         <button type="button" class="button" onClick={() => void claim(dialogue, true)}>
           Take over
+        </button>
+      )}
+    </div>
+  );
+}
+
+function NobodyOnIt({ question }: { question: Question }) {
+  const asked = askedNow(question);
+  const others = asked !== null && asked !== helperName.value;
+  const who = asked === null ? "Nobody is on it yet." : others ? `${asked} is asked now.` : "You are asked now.";
+  return (
+    <div class={`claim ${others ? "others" : ""}`}>
+      <p class={others ? undefined : "quiet"}>{who}</p>
+      {may("helper") && (
+        <button type="button" class="button" onClick={() => void claim(question.dialogue, false)}>
+          {others ? "Take it" : "I am on it"}
         </button>
       )}
     </div>

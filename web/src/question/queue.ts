@@ -2,11 +2,17 @@
 import { computed, signal } from "@preact/signals";
 import { helperName } from "../state/preferences";
 import { type Question, questions } from "../state/questions";
+import { isTurnOf } from "./turn";
 
-/** What this helper is on, then what nobody is on, then what others are on; each oldest first. */
+/** What this helper is on, what they are asked, what others are asked, what others are on; each oldest first. */
 export function inOrder(open: readonly Question[], me: string): Question[] {
-  const turn = ({ claimed_by: by }: Question) => (by === me ? 0 : by === null ? 1 : 2);
-  return [...open].sort((a, b) => turn(a) - turn(b) || a.opened - b.opened);
+  return [...open].sort((a, b) => rank(a, me) - rank(b, me) || a.opened - b.opened);
+}
+
+function rank(question: Question, me: string): number {
+  const by = question.claimed_by;
+  if (by !== null) return by === me ? 0 : 3;
+  return isTurnOf(me, question) ? 1 : 2;
 }
 
 const chosen = signal<string | null>(null);

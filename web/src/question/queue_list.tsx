@@ -3,6 +3,7 @@ import { helperName } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { faultInWords, robotName } from "./fault_words";
 import { choose, queue } from "./queue";
+import { askedNow } from "./turn";
 import "./queue_list.css";
 
 export function QueueList({ shown }: { shown: Question | null }) {
@@ -20,7 +21,7 @@ export function QueueList({ shown }: { shown: Question | null }) {
             >
               <span class="queue-robot">{robotName(each.robot)}</span>
               <span>{faultInWords(each)}</span>
-              <Taken by={each.claimed_by} />
+              <Taken by={each.claimed_by} asked={askedNow(each)} />
             </button>
           </li>
         ))}
@@ -29,7 +30,10 @@ export function QueueList({ shown }: { shown: Question | null }) {
   );
 }
 
-function Taken({ by }: { by: string | null }) {
-  if (by === null) return null;
+function Taken({ by, asked }: { by: string | null; asked: string | null }) {
+  if (by === null) {
+    if (asked === null) return null;
+    return <span class="badge">{asked === helperName.value ? "You are asked" : `${asked} is asked`}</span>;
+  }
   return <span class="badge">{by === helperName.value ? "You are on it" : `${by} is on it`}</span>;
 }

@@ -4,6 +4,7 @@ import { answer, held } from "../question/answering";
 import { actOn } from "../question/claiming";
 import { shown } from "../question/queue";
 import { onRepeat } from "../question/repeating";
+import { isTurnOf } from "../question/turn";
 import { tellEnding } from "../state/endings";
 import { helperName } from "../state/preferences";
 import { awaitingHelp, dialogueOf, type Question, together } from "../state/questions";
@@ -58,6 +59,11 @@ async function abilitiesAndMicrophone(): Promise<[Abilities, string | null, Open
   }
 }
 
+/** Nobody is talked to of what another helper is asked, unless they have taken it. */
+function isPutToMe(question: Question): boolean {
+  return isTurnOf(helperName.value, question) || question.claimed_by === helperName.value;
+}
+
 class SpokenDialogue {
   readonly #socket: SpeechSocket | null;
   readonly #stops: (() => void)[];
@@ -94,7 +100,7 @@ class SpokenDialogue {
   #follow(): void {
     const question = shown.value;
     const prompt = question?.prompt ?? null;
-    if (question !== null && prompt !== null && question.awaiting === "answer") {
+    if (question !== null && prompt !== null && question.awaiting === "answer" && isPutToMe(question)) {
       const about = `${prompt.prompt} ${prompt.version}`;
       if (about === this.#about) return;
       this.#about = about;
