@@ -50,7 +50,8 @@ export function Countdown({ question }: { question: Question }) {
   );
 }
 
-function useSecondsLeft(question: Question): number | null {
+/** Until nobody waits for an answer any more; null where that is not so, or a run is paused. */
+export function useSecondsLeft(question: Question): number | null {
   const [, tick] = useState(0);
   useEffect(() => {
     const timer = window.setInterval(() => tick((count) => count + 1), 1000);

@@ -1,28 +1,26 @@
 // Which question comes first for this helper.
-import { computed, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import { helperName } from "../state/preferences";
 import { type Question, questions } from "../state/questions";
-import { isTurnOf } from "./turn";
-
-/** What this helper is on, what they are asked, what others are asked, what others are on; each oldest first. */
-export function inOrder(open: readonly Question[], me: string): Question[] {
-  return [...open].sort((a, b) => rank(a, me) - rank(b, me) || a.opened - b.opened);
-}
-
-function rank(question: Question, me: string): number {
-  const by = question.claimed_by;
-  if (by !== null) return by === me ? 0 : 3;
-  return isTurnOf(me, question) ? 1 : 2;
-}
+import { endOf } from "../state/run_clock";
+import { runs } from "../state/service";
+import { inOrder, toShow } from "./order";
 
 const chosen = signal<string | null>(null);
+const read = signal<string | null>(null);
 
-export const queue = computed(() => inOrder(questions.value, helperName.value));
+export const queue = computed(() => inOrder(questions.value, helperName.value, dueAt));
 
 /** The question that is shown large. */
 export const shown = computed(
-  () => queue.value.find((each) => each.dialogue === chosen.value) ?? queue.value[0] ?? null,
+  () =>
+    queue.value.find((each) => each.dialogue === chosen.value) ??
+    toShow(queue.value, helperName.value, read.value),
 );
+
+effect(() => {
+  read.value = shown.value?.dialogue ?? null;
+});
 
 /** Show this one, whatever its turn; it stays until it is closed. */
 export function choose(dialogue: string): void {
@@ -32,4 +30,10 @@ export function choose(dialogue: string): void {
 /** Go back to the queue's own order. */
 export function stopChoosing(): void {
   chosen.value = null;
+}
+
+function dueAt({ run, prompt }: Question): number {
+  const { status, speed } = runs.peek().get(run) ?? { status: "running", speed: 1 };
+  const deadline = prompt?.deadline ?? null;
+  return deadline === null || status === "paused" ? Infinity : endOf(run, deadline, speed);
 }

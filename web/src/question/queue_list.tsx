@@ -1,7 +1,9 @@
 // The open questions at a glance, in the order in which they are asked.
 import { helperName } from "../state/preferences";
 import type { Question } from "../state/questions";
-import { faultInWords, robotName } from "./fault_words";
+import { runs } from "../state/service";
+import { clock, useSecondsLeft } from "./countdown";
+import { faultInWords, robotName, spoken } from "./fault_words";
 import { choose, queue } from "./queue";
 import { askedNow } from "./turn";
 import "./queue_list.css";
@@ -19,7 +21,11 @@ export function QueueList({ shown }: { shown: Question | null }) {
               aria-current={each.dialogue === shown?.dialogue ? "true" : undefined}
               onClick={() => choose(each.dialogue)}
             >
-              <span class="queue-robot">{robotName(each.robot)}</span>
+              <span class="queue-robot">
+                {robotName(each.robot)}
+                <Task run={each.run} />
+                <Left question={each} />
+              </span>
               <span>{faultInWords(each)}</span>
               <Taken by={each.claimed_by} asked={askedNow(each)} />
             </button>
@@ -27,6 +33,22 @@ export function QueueList({ shown }: { shown: Question | null }) {
         ))}
       </ol>
     </section>
+  );
+}
+
+function Task({ run }: { run: string }) {
+  const tree = runs.value.get(run)?.tree;
+  return tree === undefined ? null : <span class="queue-task">{spoken(tree)}</span>;
+}
+
+function Left({ question }: { question: Question }) {
+  const left = useSecondsLeft(question);
+  if (left === null) return null;
+  return (
+    <span class="queue-left">
+      <span class="unseen">waits for </span>
+      {clock(left)}
+    </span>
   );
 }
 

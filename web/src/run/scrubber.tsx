@@ -1,4 +1,5 @@
 // The bar that moves the shown moment: a slider over the run's time, play, and the way back.
+import { connection } from "../state/service";
 import { clock } from "./run_words";
 import { type Moment, SPEEDS } from "./moment";
 import "./scrubber.css";
@@ -67,7 +68,7 @@ export function Scrubber({ of = "the run", moment, going, onStep }: ScrubberProp
       <p class="scrubber-where">
         {newest ? (
           <>
-            {going ? <b class="live">Live</b> : <b>The end</b>} {clock(end)}
+            <Where going={going} /> {clock(end)}
           </>
         ) : (
           <>
@@ -90,4 +91,10 @@ function Icon({ d }: { d: string }) {
       <path d={d} />
     </svg>
   );
+}
+
+/** Nothing is live that no longer comes. */
+function Where({ going }: { going: boolean }) {
+  if (!going) return <b>The end</b>;
+  return connection.value === "connected" ? <b class="live">Live</b> : <b>Not connected, last seen</b>;
 }

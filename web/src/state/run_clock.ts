@@ -18,8 +18,17 @@ export function readRunClock(run: string, time: number, now = pageTime()): void 
 export function runTime(run: string, speed: number | "max", now = pageTime()): number {
   const last = readings.get(run);
   if (last === undefined) return 0;
-  const rate = speed === "max" ? 1 : Math.min(1, speed);
-  return last.time + (now - last.at) * rate;
+  return last.time + (now - last.at) * rateOf(speed);
+}
+
+/** When a time of a run's clock will have come, on the page's own (s), at the rate of `runTime`. */
+export function endOf(run: string, time: number, speed: number | "max"): number {
+  const last = readings.get(run);
+  return last === undefined ? Infinity : last.at + (time - last.time) / rateOf(speed);
+}
+
+function rateOf(speed: number | "max"): number {
+  return speed === "max" ? 1 : Math.min(1, speed);
 }
 
 function pageTime(): number {
