@@ -196,3 +196,12 @@ async def test_phone_shows_question_picture_and_answers_at_once(
         assert box is not None
         assert min(box["width"], box["height"]) >= 96
     assert await page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+async def test_whoever_promised_help_sees_how_much_longer_it_is_waited_for(stage: Stage) -> None:
+    page = await stage.open_page()
+    dialogue = await stage.runs.open(stage.run, "dropped")
+    await page.locator(".answer.yes").click()
+    await expect(page.get_by_text(re.compile(r"It gives you [01]:\d\d more\."))).to_be_visible()
+    await stage.runs.see(dialogue)
+    await expect(page.get_by_text("It gives you")).to_have_count(0)

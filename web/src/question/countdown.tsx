@@ -51,17 +51,21 @@ export function Countdown({ question }: { question: Question }) {
 }
 
 /** Until nobody waits for an answer any more; null where that is not so, or a run is paused. */
-export function useSecondsLeft(question: Question): number | null {
+export function useSecondsLeft({ run, prompt }: Question): number | null {
+  return useSecondsUntil(run, prompt?.deadline ?? null);
+}
+
+/** Until a time of a run's clock; null for no time, or while the run is paused. */
+export function useSecondsUntil(of: string, time: number | null): number | null {
   const [, tick] = useState(0);
   useEffect(() => {
     const timer = window.setInterval(() => tick((count) => count + 1), 1000);
     return () => window.clearInterval(timer);
   }, []);
-  const deadline = question.prompt?.deadline ?? null;
-  if (deadline === null) return null;
-  const run = runs.value.get(question.run);
+  if (time === null) return null;
+  const run = runs.value.get(of);
   if (run?.status === "paused") return null;
-  return Math.max(0, Math.ceil(deadline - runTime(question.run, run?.speed ?? 1)));
+  return Math.max(0, Math.ceil(time - runTime(of, run?.speed ?? 1)));
 }
 
 function dashes(left: number, within: number | null): string {

@@ -3,6 +3,7 @@ import { helperName } from "../state/preferences";
 import { type Question, stopHelping, type Together } from "../state/questions";
 import type { Help } from "../wire/types";
 import { AskingPlace } from "./asking_place";
+import { clock, useSecondsUntil } from "./countdown";
 import { robotName, spoken } from "./fault_words";
 import { PausedNode } from "./paused_node";
 import "./waiting_cards.css";
@@ -62,10 +63,19 @@ export function AwaitedHelpCard({ question, besideTree = false }: AwaitedHelpPro
         </p>
       )}
       <AskingPlace question={question} />
-      <p class="watching quiet small">It goes on by itself as soon as it sees that. There is nothing to press.</p>
+      <p class="watching quiet small">
+        It goes on by itself as soon as it sees that. There is nothing to press. <Watching question={question} />
+      </p>
       {!besideTree && <PausedNode run={question.run} node={question.node} name={question.name} />}
     </article>
   );
+}
+
+/** How much longer it watches for what was promised. */
+function Watching({ question: { run, help } }: { question: Question }) {
+  const left = useSecondsUntil(run, help?.until ?? null);
+  if (left === null) return null;
+  return left > 0 ? <>It gives you {clock(left)} more.</> : <>Its time for that is over: it looks once more.</>;
 }
 
 export function TogetherCard({ together }: { together: Together }) {
