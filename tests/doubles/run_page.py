@@ -9,7 +9,7 @@ from playwright.async_api import Page
 from mend.server.journal import events as ev
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.run_views import RunViewing
-from mend.server.runtime.views import NodeView
+from mend.server.runtime.views import NodeView, RunResult
 from mend.server.transcript import Transcript
 
 SHOWN = """() => JSON.stringify([...document.querySelectorAll('[role=treeitem]')].map((node) => ({
@@ -22,12 +22,14 @@ SHOWN = """() => JSON.stringify([...document.querySelectorAll('[role=treeitem]')
 WAIT_MS = 60_000
 
 
-def node_state(view: NodeView, talked_about: set[str]) -> str:
-    """The word for a node's state in the page."""
+def node_state(view: NodeView, talked_about: set[str], result: RunResult | None) -> str:
+    """The word for a node's state in the page; `result` once the run has ended."""
     if view.done:
         return "done"
     if view.abandoned:
         return "abandoned"
+    if result is not None:
+        return "failed" if view.node == result.node else "left"
     if view.node in talked_about:
         return "in_dialogue"
     if view.active:
@@ -35,12 +37,14 @@ def node_state(view: NodeView, talked_about: set[str]) -> str:
     return "eligible" if view.activation_level > 0 else "waiting"
 
 
-def told(views: Sequence[NodeView], talked_about: set[str]) -> list[dict[str, Any]]:
+def told(
+    views: Sequence[NodeView], talked_about: set[str], result: RunResult | None = None
+) -> list[dict[str, Any]]:
     """What the page's tree must show of a run."""
     return [
         {
             "node": each.node,
-            "state": node_state(each, talked_about),
+            "state": node_state(each, talked_about, result),
             "level": f"{each.activation_level:.2f}",
         }
         for each in views
@@ -50,7 +54,8 @@ def told(views: Sequence[NodeView], talked_about: set[str]) -> list[dict[str, An
 async def told_after(state: RunState) -> list[dict[str, Any]]:
     """What the page's tree must show after the events that `state` has folded."""
     view = await RunViewing(state, state.time, [0.0] * len(state.tree), None).view()
-    return told(view.nodes, {each.opened.node for each in state.open_dialogues})
+    talked_about = {each.opened.node for each in state.open_dialogues}
+    return told(view.nodes, talked_about, state.result)
 
 
 async def wait_for_tree(page: Page, expected: list[dict[str, Any]]) -> None:

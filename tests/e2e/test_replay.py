@@ -218,3 +218,20 @@ async def test_a_long_run_of_a_large_tree_stays_readable(
     await expect(at_work).to_have_attribute("data-state", "active", timeout=WAIT_MS)
     await expect(at_work).to_be_in_viewport()
     await expect(page.locator(".line[aria-current]")).to_be_in_viewport()
+
+
+async def test_a_link_leads_others_to_the_same_moment(
+    service: Service, open_page: OpenPage
+) -> None:
+    shown = await replay(service, open_page)
+    raised = shown.first(ev.IssueRaised)
+    await shown.slider.fill(f"{raised.time:.1f}")
+    where = shown.page.get_by_text("You are looking at")
+    await expect(where).to_be_visible()
+    told = await where.inner_text()
+    await shown.page.wait_for_url(f"**/runs/*?t={raised.time:.1f}")
+    other = await open_page(helper="bob")
+    await other.goto(shown.page.url)
+    await expect(other.get_by_text("You are looking at")).to_have_text(told)
+    await shown.page.get_by_role("button", name="To the end").click()
+    await shown.page.wait_for_url(lambda url: "?" not in url)

@@ -60,7 +60,7 @@ async def test_run_is_followed_to_its_end(service: Service, open_page: OpenPage)
     await expect(status(page)).to_have_text("finished", timeout=WAIT_MS)
     await expect(page.get_by_text("The end", exact=True)).to_be_visible()
     view = await service.runtime.wait_for_end(run.id)
-    await wait_for_tree(page, told(view.nodes, set()))
+    await wait_for_tree(page, told(view.nodes, set(), view.result))
 
 
 async def test_run_is_paused_and_resumed(service: Service, open_page: OpenPage) -> None:

@@ -55,7 +55,7 @@ export function go(address: string): void {
 
 function show(address: string): void {
   guard = null;
-  if (address !== location.pathname) history.pushState(null, "", address);
+  if (address !== location.pathname + location.search) history.pushState(null, "", address);
   path.value = location.pathname;
 }
 
@@ -79,6 +79,6 @@ export function followLinks(root: Node): void {
     if (!(link instanceof HTMLAnchorElement) || !plain || link.target || link.hasAttribute("download")) return;
     if (link.origin !== location.origin || link.pathname.startsWith("/api/") || link.pathname === "/docs") return;
     click.preventDefault();
-    go(link.pathname);
+    go(link.pathname + link.search);
   });
 }

@@ -10,6 +10,7 @@ import { isOver } from "../requests/request_words";
 import { NobodyTakesAny, RequestList } from "../requests/requests_view";
 import { useRequests } from "../requests/use_requests";
 import { createMoment, type Moment } from "../run/moment";
+import { useMomentInAddress } from "../run/moment_in_address";
 import { siteName } from "../run/run_words";
 import { Scrubber } from "../run/scrubber";
 import { usePlaying } from "../run/use_playing";
@@ -112,6 +113,7 @@ interface ShownProps {
 
 function Shown({ site, fleet, events, requests, plan, moment, again }: ShownProps) {
   const newest = moment.newest.value;
+  useMomentInAddress(moment, events.length > 0);
   const [picked, setPicked] = useState<Picked>(null);
   const names = fleet.robots.map(({ robot }) => robot);
   const live = useStandings(fleet);

@@ -17,6 +17,7 @@ import { DialogueNow } from "./dialogue_now";
 import { ended, nodeViews, type RunState } from "./fold";
 import { Leaves } from "./leaves";
 import { doersOf } from "./leaf_words";
+import { useMomentInAddress } from "./moment_in_address";
 import { openRun, type RunFeed } from "./run_feed";
 import { RunHeader } from "./run_header";
 import { Scrubber } from "./scrubber";
@@ -56,6 +57,7 @@ function Followed({ run, feed }: { run: string; feed: RunFeed }) {
   const { history, moment } = feed;
   const version = feed.version.value;
   usePlaying(feed.moment);
+  useMomentInAddress(moment, version > 0);
   // Time passes all along; what is drawn changes with the events alone.
   const count = useComputed(() => {
     if (moment.newest.value) return Infinity;

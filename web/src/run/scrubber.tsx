@@ -1,5 +1,7 @@
 // The bar that moves the shown moment: a slider over the run's time, play, and the way back.
+import { useState } from "preact/hooks";
 import { connection } from "../state/service";
+import { withMoment } from "./moment_in_address";
 import { clock } from "./run_words";
 import { type Moment, SPEEDS } from "./moment";
 import "./scrubber.css";
@@ -76,6 +78,7 @@ export function Scrubber({ of = "the run", moment, going, onStep }: ScrubberProp
           </>
         )}
       </p>
+      {!newest && <CopyLink time={time} />}
       {!newest && (
         <button type="button" class="button primary scrubber-back" onClick={moment.goToNewest}>
           {going ? "Back to live" : "To the end"}
@@ -97,4 +100,20 @@ function Icon({ d }: { d: string }) {
 function Where({ going }: { going: boolean }) {
   if (!going) return <b>The end</b>;
   return connection.value === "connected" ? <b class="live">Live</b> : <b>Not connected, last seen</b>;
+}
+
+function CopyLink({ time }: { time: number }) {
+  const [copied, setCopied] = useState<number | null>(null);
+  const copy = () =>
+    navigator.clipboard.writeText(location.origin + withMoment(location.pathname, time)).then(
+      () => setCopied(time),
+      () => setCopied(null),
+    );
+  // Pages that came over plain http from elsewhere have no clipboard; the address says the same.
+  if (navigator.clipboard === undefined) return null;
+  return (
+    <button type="button" class="button" onClick={() => void copy()}>
+      {copied === time ? "Link copied" : "Copy link"}
+    </button>
+  );
 }

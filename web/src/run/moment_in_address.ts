@@ -1,0 +1,37 @@
+// The moment of a run that is looked at stands in the address, so that a link leads others there.
+import { useEffect } from "preact/hooks";
+import type { Moment } from "./moment";
+
+const KEY = "t";
+const SETTLED_MS = 300;
+
+/** The moment that an address names, in seconds of the run's clock; null for none. */
+export function momentIn(search: string): number | null {
+  const given = new URLSearchParams(search).get(KEY);
+  const time = given === null || given.trim() === "" ? NaN : Number(given);
+  return Number.isFinite(time) && time >= 0 ? time : null;
+}
+
+/** An address with a moment in it, to a tenth of a second; without one for null. */
+export function withMoment(path: string, time: number | null): string {
+  return time === null ? path : `${path}?${KEY}=${(Math.floor(time * 10) / 10).toFixed(1)}`;
+}
+
+/** Go to the moment in the address once all was read; from then on the address tells the moment shown. */
+export function useMomentInAddress(moment: Moment, read: boolean): void {
+  const shown = moment.newest.value ? null : moment.time.value;
+  const playing = moment.playing.value;
+  useEffect(() => {
+    const asked = momentIn(location.search);
+    if (read && asked !== null) moment.goTo(asked);
+  }, [read]);
+  useEffect(() => {
+    // Browsers take few changes of the address at a time.
+    if (!read || playing) return;
+    const timer = window.setTimeout(() => {
+      const address = withMoment(location.pathname, shown);
+      if (address !== location.pathname + location.search) history.replaceState(history.state, "", address);
+    }, SETTLED_MS);
+    return () => window.clearTimeout(timer);
+  }, [read, shown, playing]);
+}
