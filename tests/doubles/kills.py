@@ -189,9 +189,11 @@ class Ordeal:
             runs = reader.runs()
             journaled = {each.seq: each for run in runs for each in reader.events(run)}
         findings.events = len(journaled)
+        # What there was before is of no run; a first one that is lost was sent all the same.
+        first = min(seq for seq, each in journaled.items() if isinstance(each, ev.RunStarted))
         findings.lost += [
             f"event {seq} is not in the journal"
-            for seq in range(1, max(journaled) + 1)
+            for seq in range(first, max(journaled) + 1)
             if seq not in journaled
         ]
         findings.lost += [

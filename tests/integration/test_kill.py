@@ -9,6 +9,7 @@ import pytest
 from kills import Ordeal, doubled_starts
 from sampled import sample
 from service_process import ServiceProcess, service_process
+from two_boxes import BENCH, BOTH
 
 from mend.server.client import MendClient
 from mend.server.journal import events as ev
@@ -25,6 +26,14 @@ def eket(world: str, **fields: object) -> RunRequest:
     return RunRequest.model_validate({"tree": "eket", "world": world, **fields})
 
 
+async def boxes(service: ServiceProcess, world: str, **fields: object) -> RunRequest:
+    """A short task, of two boxes."""
+    async with MendClient(service.url) as client:
+        await client.upload_scene(BENCH)
+        await client.upload_tree(BOTH)
+    return RunRequest.model_validate({"tree": "both", "world": world, **fields})
+
+
 @pytest.fixture
 async def service(tmp_path: Path) -> AsyncIterator[ServiceProcess]:
     async with service_process(tmp_path) as service:
@@ -34,7 +43,7 @@ async def service(tmp_path: Path) -> AsyncIterator[ServiceProcess]:
 async def test_runs_live_through_kills_of_the_service(service: ServiceProcess) -> None:
     requests = [
         eket("tabletop", scenario="eket_paper", seed=7, **WILLING),
-        eket("tabletop", seed=8, **WILLING),
+        await boxes(service, "tabletop", seed=8, **WILLING),
     ]
     found = await Ordeal(service, requests, seed=7).kill_service(sample(2, 3))
     assert found.faults == []
@@ -46,7 +55,7 @@ async def test_a_run_lives_through_kills_of_its_robot_and_then_of_the_service(
     service: ServiceProcess,
 ) -> None:
     pytest.importorskip("pybullet")
-    ordeal = Ordeal(service, [eket("workcell", seed=7, **WILLING)], seed=7)
+    ordeal = Ordeal(service, [await boxes(service, "workcell", seed=7, **WILLING)], seed=7)
     found = await ordeal.kill_robots(2)
     assert found.faults == []
     assert found.finished == found.runs > 0
@@ -57,8 +66,8 @@ async def test_a_question_outlives_the_service_and_can_be_answered_afterwards(
     service: ServiceProcess,
 ) -> None:
     async with MendClient(service.url) as client:
-        run = await client.start_run(eket("tabletop", speed=20.0))
-        await client.intervene(run.id, Intervention(act=Act.STEAL, object="green_leg"))
+        run = await client.start_run(await boxes(service, "tabletop", speed=20.0))
+        await client.intervene(run.id, Intervention(act=Act.STEAL, object="red_box"))
         before = await _wait_for(client, lambda each: each.awaiting == "answer")
         await service.kill()
         await service.start()

@@ -11,7 +11,7 @@ from sampled import sample
 
 from mend.tasks.library import TREES
 
-LEFT = {"workshop": 6, "kit": 4, "tea_table": 5}
+LEFT = {"workshop": 3, "kit": 2, "tea_table": 3}
 ALL = 1000
 
 
