@@ -24,6 +24,8 @@ SCRIPTS = load_scripts()
 ARMED_AFTER_MS = 550
 HELD_MS = 3_100
 
+SHARES = 3
+
 Answer = Callable[[Page, str], Awaitable[None]]
 
 
@@ -37,10 +39,13 @@ async def by_key(page: Page, answer: str) -> None:
     await page.keyboard.press(answer[0])
 
 
-@pytest.mark.parametrize("kind", sorted(SCRIPTS))
-async def test_every_branch_of_a_dialogue(stage: Stage, kind: str) -> None:
-    paths = every_branch(SCRIPTS[kind], issue_of(kind))
-    await walk(stage, [(kind, path) for path in paths], by_button)
+@pytest.mark.parametrize("share", range(SHARES))
+async def test_every_branch_of_every_dialogue(stage: Stage, share: int) -> None:
+    """So many at one page each: a page takes as long to open as a dialogue to be walked."""
+    kinds = sorted(SCRIPTS)[share::SHARES]
+    assert kinds
+    paths = [(kind, path) for kind in kinds for path in every_branch(SCRIPTS[kind], issue_of(kind))]
+    await walk(stage, paths, by_button)
 
 
 async def test_every_kind_of_answer_is_given_by_key(stage: Stage) -> None:
@@ -52,16 +57,24 @@ async def walk(stage: Stage, paths: Sequence[tuple[str, Path]], answer: Answer) 
     # Time passes as soon as the test says so.
     await page.clock.install()
     for kind, path in paths:
-        conversation = Conversation(SCRIPTS[kind], issue_of(kind), Outlook())
-        dialogue = await stage.runs.open(stage.run, kind)
-        turns = conversation.open()
-        for call in path:
-            await expect_shown(page, turns)
-            await make(stage, page, dialogue, call, answer)
-            turns = converse(conversation, call)
+        try:
+            await walk_one(stage, page, kind, path, answer)
+        except AssertionError as error:
+            error.add_note(f"in the dialogue '{kind}', on the way {path}")
+            raise
+
+
+async def walk_one(stage: Stage, page: Page, kind: str, path: Path, answer: Answer) -> None:
+    conversation = Conversation(SCRIPTS[kind], issue_of(kind), Outlook())
+    dialogue = await stage.runs.open(stage.run, kind)
+    turns = conversation.open()
+    for call in path:
         await expect_shown(page, turns)
-        await stage.runs.finish_leaf(dialogue)
-        await expect(page.get_by_text("No robot asks anything")).to_be_visible()
+        await make(stage, page, dialogue, call, answer)
+        turns = converse(conversation, call)
+    await expect_shown(page, turns)
+    await stage.runs.finish_leaf(dialogue)
+    await expect(page.get_by_text("No robot asks anything")).to_be_visible()
 
 
 def issue_of(kind: str) -> Issue:
