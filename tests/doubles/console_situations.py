@@ -9,6 +9,7 @@ from uuid import UUID
 from console_in_browser import OpenPage
 from office_with_fleet import open_office_with_fleet
 from playwright.async_api import Page, expect
+from recorded_service import recorded_events
 from two_boxes import BENCH, BOTH
 
 from mend.fleet.requests import DeliverMessage, GoToRoom, Transport
@@ -17,6 +18,7 @@ from mend.maps.building.random_building import random_building
 from mend.server.composition import Service
 from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.request_refused import RequestRefusedError
+from mend.server.journal.journal import Entry
 from mend.server.runtime.requests import RunRequest
 from mend.server.sites.requests import SiteRequest
 from mend.sim.building.scene import scene_of
@@ -75,8 +77,8 @@ async def no_runs(_: Service, open_page: OpenPage) -> Page:
 
 async def runs(service: Service, open_page: OpenPage) -> Page:
     await ask(service)
-    page = await finished_run(service, open_page)
-    await page.goto("/runs")
+    await service.journal.append(Entry(events=recorded_events()))
+    page = await open_page("/runs")
     await expect(page.get_by_text("The task is done")).to_be_visible()
     await expect(page.get_by_text("Asks a question")).to_be_visible(timeout=PATIENCE_MS)
     return page
@@ -90,11 +92,11 @@ async def live_run(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
-async def begin_two_boxes(service: Service) -> UUID:
+async def begin_two_boxes(service: Service, speed: float | Literal["max"] = 1.0) -> UUID:
     """Start a run whose robot is at one box for a while, so that a person can take the other."""
     await service.library.scenes.save("small_bench", BENCH)
     await service.library.trees.save("both", BOTH)
-    request = RunRequest(tree="both", world="tabletop", speed=1.0, seed=2)
+    request = RunRequest(tree="both", world="tabletop", speed=speed, seed=2)
     return (await service.runtime.start_run(request)).id
 
 

@@ -94,25 +94,22 @@ async def test_held_answer_is_dropped_when_somebody_else_answers(stage: Stage) -
     await expect(page.get_by_text("The robot watches for the yellow bar")).to_be_visible()
 
 
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
+async def test_card_closes_by_itself_and_says_why(stage: Stage) -> None:
+    page = await stage.open_page()
+    for call, words in (
         ("put_right:in_reach:appeared", "I see the yellow bar within my reach now"),
         ("silence", "no help was seen"),
         ("abort", "the robot has stopped this task"),
-    ],
-)
-async def test_card_closes_by_itself_and_says_why(stage: Stage, call: str, words: str) -> None:
-    page = await stage.open_page()
-    dialogue = await stage.runs.open(stage.run, "dropped")
-    await expect(page.locator(".answer.yes")).to_be_visible()
-    await stage.runs.call(dialogue, call)
-    told = page.get_by_role("status", name="What became of questions")
-    await expect(told).to_contain_text(words)
-    await expect(told).to_contain_text("yellow bar")
-    await expect(page.locator(".answer")).to_have_count(0)
-    await told.get_by_role("button", name="Dismiss").click()
-    await expect(told).to_be_empty()
+    ):
+        dialogue = await stage.runs.open(stage.run, "dropped")
+        await expect(page.locator(".answer.yes")).to_be_visible()
+        await stage.runs.call(dialogue, call)
+        told = page.get_by_role("status", name="What became of questions")
+        await expect(told).to_contain_text(words)
+        await expect(told).to_contain_text("yellow bar")
+        await expect(page.locator(".answer")).to_have_count(0)
+        await told.get_by_role("button", name="Dismiss").click()
+        await expect(told).to_be_empty()
 
 
 async def test_more_time_moves_the_deadline(stage: Stage) -> None:
@@ -181,21 +178,20 @@ async def test_seconds_before_the_fault_can_be_scrubbed_by_key(stage: Stage) -> 
     await expect(slider).to_have_attribute("aria-valuetext", "the moment of the fault")
 
 
-@pytest.mark.parametrize(("width", "height"), [(360, 640), (390, 844)])
-async def test_phone_shows_question_picture_and_answers_at_once(
-    stage: Stage, width: int, height: int
-) -> None:
-    page = await stage.open_page(viewport={"width": width, "height": height})
+async def test_phone_shows_question_picture_and_answers_at_once(stage: Stage) -> None:
+    page = await stage.open_page(viewport={"width": 390, "height": 844})
     await stage.runs.open(stage.run, "dropped")
-    await expect(page.get_by_role("heading", name="I lost hold")).to_be_in_viewport(ratio=1)
-    await expect(page.get_by_role("img", name="camera saw")).to_be_in_viewport(ratio=0.7)
-    for answer in ("yes", "no"):
-        button = page.locator(f".answer.{answer}")
-        await expect(button).to_be_in_viewport(ratio=1)
-        box = await button.bounding_box()
-        assert box is not None
-        assert min(box["width"], box["height"]) >= 96
-    assert await page.evaluate("document.documentElement.scrollWidth") <= width
+    for width, height in ((390, 844), (360, 640)):
+        await page.set_viewport_size({"width": width, "height": height})
+        await expect(page.get_by_role("heading", name="I lost hold")).to_be_in_viewport(ratio=1)
+        await expect(page.get_by_role("img", name="camera saw")).to_be_in_viewport(ratio=0.7)
+        for answer in ("yes", "no"):
+            button = page.locator(f".answer.{answer}")
+            await expect(button).to_be_in_viewport(ratio=1)
+            box = await button.bounding_box()
+            assert box is not None
+            assert min(box["width"], box["height"]) >= 96
+        assert await page.evaluate("document.documentElement.scrollWidth") <= width
 
 
 async def test_whoever_promised_help_sees_how_much_longer_it_is_waited_for(stage: Stage) -> None:

@@ -4,6 +4,7 @@ import re
 
 import pytest
 from console_in_browser import OpenPage
+from console_situations import begin_two_boxes
 from playwright.async_api import Page, expect
 from run_page import WAIT_MS, told, wait_for_tree
 
@@ -53,13 +54,11 @@ async def test_open_question_stands_beside_its_run(service: Service, open_page: 
 
 
 async def test_run_is_followed_to_its_end(service: Service, open_page: OpenPage) -> None:
-    run = await service.runtime.start_run(
-        RunRequest(tree="eket", world="tabletop", speed=30.0, scenario="eket_paper", seed=7)
-    )
-    page = await open_page(f"/runs/{run.id}")
+    run = await begin_two_boxes(service, speed=20.0)
+    page = await open_page(f"/runs/{run}")
     await expect(status(page)).to_have_text("finished", timeout=WAIT_MS)
     await expect(page.get_by_text("The end", exact=True)).to_be_visible()
-    view = await service.runtime.wait_for_end(run.id)
+    view = await service.runtime.wait_for_end(run)
     await wait_for_tree(page, told(view.nodes, set(), view.result))
 
 
@@ -109,16 +108,16 @@ async def test_unknown_run_is_said_to_be_unknown(open_page: OpenPage) -> None:
     await expect(page.get_by_role("heading", name="This run cannot be shown")).to_be_visible()
 
 
-@pytest.mark.parametrize("width", [360, 768, 1440])
-async def test_page_is_never_wider_than_its_window(
-    service: Service, open_page: OpenPage, width: int
-) -> None:
+async def test_page_is_never_wider_than_its_window(service: Service, open_page: OpenPage) -> None:
     run = await asked_run(service)
-    page = await open_page(f"/runs/{run.id}", viewport={"width": width, "height": 800})
+    page = await open_page(f"/runs/{run.id}", viewport={"width": 360, "height": 800})
     await expect(page.get_by_role("tree")).to_be_visible()
     await page.get_by_role("button", name="One event back").click()
     await expect(page.get_by_role("button", name="Back to live")).to_be_visible()
-    assert await page.evaluate("document.documentElement.scrollWidth") <= width
+    for width in (360, 768, 1440):
+        await page.set_viewport_size({"width": width, "height": 800})
+        await expect(page.get_by_role("tree")).to_be_visible()
+        assert await page.evaluate("document.documentElement.scrollWidth") <= width
 
 
 async def test_a_phone_shows_one_part_at_a_time(service: Service, open_page: OpenPage) -> None:

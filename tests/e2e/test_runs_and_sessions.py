@@ -5,8 +5,10 @@ import re
 import pytest
 from console_in_browser import TOKEN, OpenPage
 from playwright.async_api import Page, expect
+from recorded_service import recorded_events
 
 from mend.server.composition import Service
+from mend.server.journal.journal import Entry
 from mend.server.journal.run_index import RunPage
 from mend.server.runtime.requests import RunRequest
 
@@ -55,8 +57,7 @@ async def test_refused_start_says_so_at_the_field(open_page: OpenPage) -> None:
 
 
 async def test_runs_are_found_by_their_state(service: Service, open_page: OpenPage) -> None:
-    quick = RunRequest(tree="eket", world="tabletop", speed="max", scenario="eket_paper")
-    await service.runtime.start_run(quick)
+    await service.journal.append(Entry(events=recorded_events()))
     slow = RunRequest(tree="tea_table", world="tabletop", speed=0.01)
     await service.runtime.start_run(slow)
     page = await open_page("/runs")

@@ -3,7 +3,6 @@
 import math
 import shutil
 from collections.abc import AsyncIterator
-from typing import Literal
 from uuid import UUID
 
 import cv2
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 import pytest_asyncio
 from console_in_browser import TOKEN, OpenPage
+from console_situations import begin_two_boxes
 from numpy.typing import NDArray
 from playwright.async_api import Browser, Locator, Page, async_playwright, expect
 
@@ -36,7 +36,7 @@ SPOT = """each => {
 }"""
 
 
-async def start(service: Service, speed: float | Literal["max"]) -> UUID:
+async def start(service: Service, speed: float) -> UUID:
     run = await service.runtime.start_run(
         RunRequest(tree="eket", world="tabletop", speed=speed, seed=1)
     )
@@ -206,17 +206,18 @@ async def test_part_is_moved_by_a_click_on_the_table(service: Service, open_page
 
 
 async def test_replay_shows_where_everything_was(service: Service, open_page: OpenPage) -> None:
-    run = await start(service, "max")
+    run = await begin_two_boxes(service, "max")
+    await service.runtime.wait_for_end(run)
     page = await open_page(f"/runs/{run}")
     await expect(page.get_by_text("The end", exact=True)).to_be_visible(timeout=LONG_MS)
     await drawn_canvas(page)
     await page.get_by_role("button", name="Names").click()
-    at_the_end = await place_of_name(page, "green leg")
+    at_the_end = await place_of_name(page, "red box")
     await page.get_by_label("Moment of the run").fill("0")
-    await wait_for_motion(page, "green leg", at_the_end)
+    await wait_for_motion(page, "red box", at_the_end)
     await open_list(page)
-    await expect(page.locator(".scene-row", has_text="green leg")).to_be_visible()
-    await expect(page.get_by_role("button", name="Intervene: green leg")).to_have_count(0)
+    await expect(page.locator(".scene-row", has_text="red box")).to_be_visible()
+    await expect(page.get_by_role("button", name="Intervene: red box")).to_have_count(0)
 
 
 @pytest_asyncio.fixture(loop_scope="session")
