@@ -24,6 +24,18 @@ describe("the pace of drawing", () => {
     expect(draw(pace, 200, 60).map((each) => each.pixels)).toEqual([0.75, 0.5]);
   });
 
+  it("leaves out frames where no graphics processor helps, and holds that for no slowness", () => {
+    const drawnAt = (pace: Pace, everyMs: number) =>
+      Array.from({ length: 240 }, (_, index) => everyMs * index).filter((now) => {
+        if (pace.early(now)) return false;
+        expect(pace.drawn(now)).toBeNull();
+        return true;
+      });
+    expect(drawnAt(createPace(true), 1000 / 60).length).toBe(120);
+    expect(drawnAt(createPace(true), 1000 / 144).length).toBe(80);
+    expect(drawnAt(createPace(false), 1000 / 60).length).toBe(240);
+  });
+
   it("takes a pause for no slowness: nothing was to be drawn", () => {
     expect(draw(createPace(false), 200, 1000)).toEqual([]);
   });

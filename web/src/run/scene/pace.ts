@@ -2,6 +2,8 @@
 
 const WANTED_MS = 33;
 const LOOKED_AT = 10;
+// Frames of the display come a little earlier or later.
+const JITTER_MS = 2;
 // After a longer pause nothing was to be drawn.
 const PAUSE_MS = 400;
 
@@ -27,6 +29,8 @@ const LADDER_BY_SOFTWARE: readonly Detail[] = [
 
 export interface Pace {
   readonly first: Detail;
+  /** Whether to leave out a frame of the display: by software each takes much of a core, and poses come less often. */
+  early(now: number): boolean;
   /**
    * Hear of each drawing's time (milliseconds); answers with less detail when they come too slowly,
    * else with null. It never goes back up, as going to and fro would be seen.
@@ -41,6 +45,7 @@ export function createPace(bySoftware: boolean): Pace {
   let gaps: number[] = [];
   return {
     first: ladder[0] as Detail,
+    early: (now) => bySoftware && now - before < WANTED_MS / 2 + JITTER_MS,
     drawn(now) {
       const gap = now - before;
       before = now;
@@ -49,7 +54,7 @@ export function createPace(bySoftware: boolean): Pace {
       if (gaps.length < LOOKED_AT) return null;
       const middle = gaps.sort((a, b) => a - b)[LOOKED_AT / 2] as number;
       gaps = [];
-      if (middle <= WANTED_MS + 2 || rung === ladder.length - 1) return null;
+      if (middle <= WANTED_MS + JITTER_MS || rung === ladder.length - 1) return null;
       rung += 1;
       return ladder[rung] ?? null;
     },

@@ -63,6 +63,10 @@ export function createStage(canvas: HTMLCanvasElement, before: Before, after: ()
   const draw = (now: number) => {
     request = 0;
     window.clearTimeout(rest);
+    if (pace.early(now)) {
+      invalidate();
+      return;
+    }
     if (share !== pixels) resize(pixels);
     const again = before(now);
     const turning = orbit.update();
