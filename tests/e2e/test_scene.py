@@ -143,7 +143,7 @@ async def test_part_is_stolen_by_a_click_on_it(service: Service, open_page: Open
 async def test_part_is_stolen_from_the_list_with_keys(
     service: Service, open_page: OpenPage
 ) -> None:
-    run = await start(service, 2.0)
+    run = await start(service, 4.0)
     page = await open_page(f"/runs/{run}")
     opens = page.get_by_role("button", name="Objects as a list")
     await opens.focus(timeout=LONG_MS)

@@ -152,9 +152,9 @@ async def test_two_arms_go_on_where_a_stopped_service_left_them(tmp_path: Path) 
     journal = tmp_path / "journal.db"
     with touching_robots() as touched:
         async with open_service(settings(journal)) as service:
-            scene = (EXAMPLES / "kit_for_two.yaml").read_text()
-            await service.library.scenes.save("kit_for_two", scene)
-            run = (await service.runtime.start_run(request("kit", "kit_for_two"))).id
+            await service.library.scenes.save("four", FOUR_SCENE)
+            await service.library.trees.save("four", FOUR_TREE)
+            run = (await service.runtime.start_run(request("four", "four"))).id
             with service.journal.subscribe(0) as records:
                 async for record in records:
                     event = read_event(record.seq, record.text)
@@ -168,7 +168,7 @@ async def test_two_arms_go_on_where_a_stopped_service_left_them(tmp_path: Path) 
     started = events[0]
     assert isinstance(started, ev.RunStarted)
     assert broken_constraints(events, kinds_of(started)) == []
-    assert len([each for each in events if isinstance(each, ev.NodeDone)]) == 20
+    assert len([each for each in events if isinstance(each, ev.NodeDone)]) == 4
 
 
 @pytest.mark.slow(30)

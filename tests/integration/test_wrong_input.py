@@ -19,7 +19,7 @@ from service_under_test import TOKEN, build
 from mend.server.limits import Limits
 
 SETTINGS = settings(
-    max_examples=sample(5, 10), deadline=None, suppress_health_check=list(HealthCheck)
+    max_examples=sample(3, 10), deadline=None, suppress_health_check=list(HealthCheck)
 )
 
 CHECKS = [
