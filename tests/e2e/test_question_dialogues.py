@@ -39,6 +39,7 @@ async def by_key(page: Page, answer: str) -> None:
     await page.keyboard.press(answer[0])
 
 
+@pytest.mark.slow(15)
 @pytest.mark.parametrize("share", range(SHARES))
 async def test_every_branch_of_every_dialogue(stage: Stage, share: int) -> None:
     """So many at one page each: a page takes as long to open as a dialogue to be walked."""

@@ -76,6 +76,7 @@ async def speech() -> AsyncIterator[SpeechAbilities]:
     await speech.close()
 
 
+@pytest.mark.slow(30)
 async def test_every_kind_of_answer_by_voice(persons: Persons, speech: SpeechAbilities) -> None:
     # Two at once: most of the time is taken by words.
     paths = iter(every_kind_of_answer(SCRIPTS, issue_of("dropped")))

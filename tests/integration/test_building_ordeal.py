@@ -17,7 +17,7 @@ def read(truth: Path) -> list[dict[str, Any]]:
     return [json.loads(each) for each in truth.read_text().splitlines()]
 
 
-@pytest.mark.slow(40)
+@pytest.mark.slow(20)
 async def test_what_a_service_says_is_true_whatever_happens_and_whoever_is_killed(
     tmp_path: Path,
 ) -> None:

@@ -45,7 +45,7 @@ def said(events: list[ev.Event]) -> list[str]:
     return [each.text for each in events if isinstance(each, ev.Prompt)]
 
 
-@pytest.mark.slow(40)
+@pytest.mark.slow(4)
 async def test_somebody_is_led_to_another_floor_and_arrives(tmp_path: Path) -> None:
     async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
         site = await open_office_with_fleet(service, "max", floors=2, dawdling=1.0)
@@ -60,7 +60,7 @@ async def test_somebody_is_led_to_another_floor_and_arrives(tmp_path: Path) -> N
     assert behaviors == ["meet_person", "escort"]
 
 
-@pytest.mark.slow(40)
+@pytest.mark.slow(4)
 async def test_who_does_not_come_is_asked_for_never_thanked_for_and_told(tmp_path: Path) -> None:
     async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
         site = await open_office_with_fleet(service, "max", floors=2, no_shows=1.0)
@@ -75,7 +75,7 @@ async def test_who_does_not_come_is_asked_for_never_thanked_for_and_told(tmp_pat
     assert not any("Thank" in each for each in said(events))
 
 
-@pytest.mark.slow(30)
+@pytest.mark.slow(4)
 async def test_one_robot_escorts_two_people_one_after_the_other(tmp_path: Path) -> None:
     tree = json.dumps(
         {

@@ -18,7 +18,7 @@ ARGUMENTS: Mapping[str, Sequence[str]] = {"demo_client.py": ("--world", "tableto
 TIME_S = 120.0
 """Patience with a run, on a machine that is busy."""
 
-pytestmark = pytest.mark.slow(6)
+pytestmark = pytest.mark.slow(4)
 
 
 @pytest.mark.parametrize("client", sorted(each.name for each in EXAMPLES.glob("*.py")))

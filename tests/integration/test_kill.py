@@ -17,7 +17,7 @@ from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import DialogueView, RunStatus
 from mend.tasks.intervention import Act, Intervention
 
-pytestmark = pytest.mark.slow(15)
+pytestmark = pytest.mark.slow(6)
 
 WILLING = {"answers": ["yes"] * 100, "max_attempts": 100, "speed": "max"}
 

@@ -34,7 +34,7 @@ def found_in(events: list[ev.Event]) -> list[tuple[str, frozenset[str]]]:
     return [(each.finding, frozenset(each.between)) for each in found]
 
 
-@pytest.mark.slow(20)
+@pytest.mark.slow(4)
 async def test_a_robot_alone_goes_round_without_asking(tmp_path: Path) -> None:
     ring = blocked_ring(1, LONGER_S)
     tree = {"then": [{"behavior": "go_to", "place": ring.rooms[0].replace("/", "-")}]}
@@ -69,7 +69,7 @@ async def done(service: Service, name: str) -> None:
     assert view.status == "done", view.reason
 
 
-@pytest.mark.slow(40)
+@pytest.mark.slow(9)
 async def test_what_one_robot_finds_others_go_round_from_the_beginning_after_a_restart_too(
     tmp_path: Path,
 ) -> None:

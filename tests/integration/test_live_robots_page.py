@@ -22,7 +22,7 @@ SECTIONS = {
 }
 PATIENCE_S = 120.0
 
-pytestmark = pytest.mark.slow(6)
+pytestmark = pytest.mark.slow(3)
 
 
 @asynccontextmanager

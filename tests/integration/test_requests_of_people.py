@@ -60,7 +60,7 @@ async def until_over(service: Service, names: set[str]) -> dict[str, list[str]]:
     return went(await events_until(service, over))
 
 
-@pytest.mark.slow(20)
+@pytest.mark.slow(2)
 async def test_rooms_that_are_asked_for_are_visited_by_all_robots(tmp_path: Path) -> None:
     async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
         site = await open_office_with_fleet(service, "max", robots=2)
@@ -75,7 +75,7 @@ async def test_rooms_that_are_asked_for_are_visited_by_all_robots(tmp_path: Path
     assert runs == {"finished": 4}
 
 
-@pytest.mark.slow(20)
+@pytest.mark.slow(2)
 async def test_a_service_that_stopped_goes_on_with_what_its_robots_were_doing(
     tmp_path: Path,
 ) -> None:
@@ -102,7 +102,7 @@ async def test_a_service_that_stopped_goes_on_with_what_its_robots_were_doing(
     assert runs == {"finished": 2}
 
 
-@pytest.mark.slow(40)
+@pytest.mark.slow(3)
 async def test_things_are_brought_and_messages_told_over_two_floors(tmp_path: Path) -> None:
     async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
         site = await open_office_with_fleet(service, "max", robots=2, floors=2)
@@ -131,7 +131,7 @@ async def test_things_are_brought_and_messages_told_over_two_floors(tmp_path: Pa
     assert all(split[TimeUse.UNKNOWN] == 0.0 for split in by_leg.values())
 
 
-@pytest.mark.slow(10)
+@pytest.mark.slow
 async def test_what_is_cancelled_while_a_robot_is_on_its_way_is_broken_off(tmp_path: Path) -> None:
     async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
         # Slow enough that it is on its way for long.
@@ -151,7 +151,7 @@ async def test_what_is_cancelled_while_a_robot_is_on_its_way_is_broken_off(tmp_p
     assert runs == {"aborted": 1, "finished": 1}
 
 
-@pytest.mark.slow(10)
+@pytest.mark.slow
 async def test_requests_are_made_followed_changed_and_cancelled_over_rest(tmp_path: Path) -> None:
     async with (
         open_service(settings(tmp_path)) as service,
@@ -192,7 +192,7 @@ async def test_requests_are_made_followed_changed_and_cancelled_over_rest(tmp_pa
     assert "no longer wanted 'later'" in deeds
 
 
-@pytest.mark.slow(10)
+@pytest.mark.slow
 async def test_a_robot_is_sent_over_rest_and_is_where_it_was_sent(tmp_path: Path) -> None:
     async with (
         open_service(settings(tmp_path)) as service,
@@ -232,7 +232,7 @@ async def test_a_site_without_a_fleet_takes_no_requests(tmp_path: Path) -> None:
             await service.sites.open_site(SiteRequest(scene="eket", fleet=FleetOptions()))
 
 
-@pytest.mark.slow(10)
+@pytest.mark.slow
 async def test_words_are_understood_read_back_and_asked_for_over_rest(tmp_path: Path) -> None:
     async with (
         open_service(settings(tmp_path)) as service,
@@ -268,7 +268,7 @@ async def test_words_are_understood_read_back_and_asked_for_over_rest(tmp_path: 
             await client.understand_request(WordsAsked(words="come here", robot="nobody"))
 
 
-@pytest.mark.slow(10)
+@pytest.mark.slow
 async def test_a_refusal_says_why_without_the_name(tmp_path: Path) -> None:
     async with (
         open_service(settings(tmp_path)) as service,

@@ -30,7 +30,7 @@ def office() -> Scene:
     return scene_of(ROW, "row", 2).model_copy(update={"robots": bases})
 
 
-@pytest.mark.slow(20)
+@pytest.mark.slow(2)
 async def test_who_can_get_there_goes_before_people_are_asked(tmp_path: Path) -> None:
     settings = Settings(port=0, data_dir=tmp_path, log_level="error", speech_voice="none")
     async with open_service(settings) as service, asyncio.timeout(PATIENCE_S):

@@ -25,7 +25,7 @@ def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.slow(40)
+@pytest.mark.slow(15)
 def test_the_shipped_requests_are_all_met(tmp_path: Path) -> None:
     exact = ("--option", "localizer=exact", "--option", "unmapped=0")
     done = run(tmp_path, str(SCENE), str(REQUESTS), *exact)

@@ -15,7 +15,7 @@ LEFT = {"workshop": 3, "kit": 2, "tea_table": 3}
 ALL = 1000
 
 
-@pytest.mark.slow(5)
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("task", TREES.names())
 async def test_a_shipped_task_is_done_on_the_tabletop(task: str) -> None:
     outcome = await run_task(task, "tabletop", seed=1)
@@ -23,7 +23,7 @@ async def test_a_shipped_task_is_done_on_the_tabletop(task: str) -> None:
     assert max(outcome.errors_mm) < 5.0
 
 
-@pytest.mark.slow(20)
+@pytest.mark.slow(8)
 @pytest.mark.parametrize("task", TREES.names())
 async def test_a_shipped_task_is_done_in_the_workcell(task: str) -> None:
     pytest.importorskip("pybullet")

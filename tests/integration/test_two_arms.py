@@ -171,7 +171,7 @@ async def test_two_arms_go_on_where_a_stopped_service_left_them(tmp_path: Path) 
     assert len([each for each in events if isinstance(each, ev.NodeDone)]) == 4
 
 
-@pytest.mark.slow(30)
+@pytest.mark.slow(6)
 async def test_two_pr2s_work_at_a_time_and_never_touch() -> None:
     pytest.importorskip("pybullet")
     with touching_robots() as touched:

@@ -67,7 +67,7 @@ def service() -> Iterator[ServiceUnderTest]:
     service.journal.close()
 
 
-@pytest.mark.slow(10)
+@pytest.mark.slow(6)
 def test_requests_in_turn_end_in_answers_that_are_documented(service: ServiceUnderTest) -> None:
     reached: set[tuple[str, int]] = set()
     whole = schemathesis.openapi.from_asgi("/openapi.json", service.app)
