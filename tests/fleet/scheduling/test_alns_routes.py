@@ -74,7 +74,7 @@ def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
         # It gives up at the end of its time only: more of that would find as little.
         assert solved(problem, seconds=6.0).status is Status.UNKNOWN
         return
-    found = solved(problem, seconds=80.0)
+    found = solved(problem, seconds=30.0)
     assert exact.status is Status.OPTIMAL
     assert exact.cost is not None
     assert found.cost is not None
@@ -184,8 +184,8 @@ def test_start_with_transfers_stays_where_no_robot_can_do_it_alone() -> None:
     problem = corridor(items=(parcel(),), robots=robots)
     start = earliest_schedule(problem, HANDED_OVER)
     assert isinstance(start, Schedule)
-    assert solved(problem, transfers=False).status is Status.UNKNOWN
-    assert solved(problem, transfers=False, start=start).schedule == start
+    assert solved(problem, seconds=2.0, transfers=False).status is Status.UNKNOWN
+    assert solved(problem, seconds=2.0, transfers=False, start=start).schedule == start
 
 
 def test_same_seed_finds_the_same() -> None:
