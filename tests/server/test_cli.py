@@ -742,24 +742,22 @@ def test_what_a_robot_cannot_do_is_told_with_world_file_and_line(
     assert mend("check", str(task), "--world", "mars").code == 2
 
 
-def test_a_run_that_the_robot_cannot_do_is_refused(data_dir: Path, tmp_path: Path) -> None:
+def test_a_run_that_the_robot_cannot_do_is_refused(mend: Mend, tmp_path: Path) -> None:
     task = write_file(tmp_path, TASK)
     scene = tmp_path / "scenes" / "bench.yaml"
     scene.write_text(SCENE.replace("[0.05, 0.05, 0.08]", "[0.09, 0.09, 0.08]"))
-    with begin(data_dir, "run", str(task), "--world", "tabletop", "--json") as process:
-        out, err = process.communicate(timeout=120)
-    assert (process.returncode, out) == (2, "")
-    assert "cannot do the tree 'just_one' in the scene 'bench'" in err
-    assert f"mend: {scene}:3: " in err
-    assert "takes 12 to 78 mm" in err
+    outcome = mend("run", str(task), "--world", "tabletop", "--json")
+    assert (outcome.code, outcome.out) == (2, "")
+    assert "cannot do the tree 'just_one' in the scene 'bench'" in outcome.err
+    assert f"mend: {scene}:3: " in outcome.err
+    assert "takes 12 to 78 mm" in outcome.err
 
 
-def test_a_run_with_an_option_that_its_world_has_not_is_refused(data_dir: Path) -> None:
-    words = "run eket --world tabletop --json --option camera_nois=4"
-    with begin(data_dir, *words.split()) as process:
-        out, err = process.communicate(timeout=120)
-    assert (process.returncode, out) == (2, "")
-    assert "the world 'tabletop' has no option 'camera_nois'; it has 'camera_noise', " in err
+def test_a_run_with_an_option_that_its_world_has_not_is_refused(mend: Mend) -> None:
+    outcome = mend("run", "eket", "--world", "tabletop", "--json", "--option", "camera_nois=4")
+    assert (outcome.code, outcome.out) == (2, "")
+    told = "the world 'tabletop' has no option 'camera_nois'; it has 'camera_noise', "
+    assert told in outcome.err
 
 
 @pytest.mark.slow

@@ -49,7 +49,7 @@ def hours(leaps: bool, *, place: str, person: bool, **options: Any) -> tuple[lis
         bench.go("robot1", place, "meet_person", person="Ann")
     else:
         bench.go("robot1", place)
-    for pause_s in (7.03, 40.0, 170.5):
+    for pause_s in (7.03, 30.0, 90.5):
         bench.hold_until(bench.group.time_s() + pause_s)
         states.append(bench.world.snapshot())
         bench.world.intervene(Intervention(act=Act.RELEASE))
