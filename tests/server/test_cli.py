@@ -311,6 +311,7 @@ def test_a_run_has_a_service_of_its_own_that_nobody_else_can_use(
     assert first.token != second.token
     assert first.journal_path != second.journal_path
     assert first.journal_path.parent == data_dir / "runs"
+    assert (first.speech_voice, first.speech_recognition) == ("none", False)
 
 
 def test_a_task_file_is_run_under_its_own_name(
