@@ -39,7 +39,7 @@ class Shelf:
         )
         self.library.off_loop.run = self._counted  # type: ignore[method-assign]
 
-    async def _counted(self, chars, work, *args):
+    async def _counted(self, chars, work, *args):  # noqa: ARG002
         self.checks += 1
         return await asyncio.to_thread(work, *args)
 

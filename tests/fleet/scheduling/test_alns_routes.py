@@ -88,7 +88,7 @@ def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
     weight=st.sampled_from((0.0, 5.0, 1e6)),
     transfers=st.booleans(),
 )
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=sample(25, 80))
 def test_schedule_found_passes_the_checker(
     items: tuple[Item, ...], seed: int, weight: float, transfers: bool
 ) -> None:
