@@ -602,7 +602,7 @@ def test_the_command_stays_quiet_when_its_reader_goes_away(data_dir: Path) -> No
         assert process.wait() != 0
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_the_papers_scenario_is_run_for_real_and_finishes(data_dir: Path) -> None:
     arguments = "run eket --world tabletop --scenario eket_paper --speed max --seed 7 --json"
     with begin(data_dir, *arguments.split()) as process:
@@ -628,7 +628,7 @@ def test_the_papers_scenario_is_run_for_real_and_finishes(data_dir: Path) -> Non
     assert isinstance(events[-1], ev.RunFinished)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(3)
 def test_ctrl_c_aborts_a_real_run_which_its_journal_then_tells(data_dir: Path) -> None:
     arguments = "run eket --world tabletop --answers none --json"
     with begin(data_dir, *arguments.split()) as process:
@@ -643,7 +643,7 @@ def test_ctrl_c_aborts_a_real_run_which_its_journal_then_tells(data_dir: Path) -
         assert isinstance(reader.events(first.run)[-1], ev.RunAborted)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_serve_says_where_it_listens_and_stops_when_told(
     data_dir: Path, number: signal.Signals
@@ -761,7 +761,7 @@ def test_a_run_with_an_option_that_its_world_has_not_is_refused(mend: Mend) -> N
     assert told in outcome.err
 
 
-@pytest.mark.slow
+@pytest.mark.slow(3)
 def test_a_random_scene_is_printed_with_its_tree_and_can_be_run(
     mend: Mend, data_dir: Path, tmp_path: Path
 ) -> None:

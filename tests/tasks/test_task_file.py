@@ -201,7 +201,7 @@ def test_a_deep_tree_is_read_and_one_beyond_the_limit_refused_without_recursion(
         assert message == f"nodes stand inside one another in more than {MAX_NODE_DEPTH} levels"
 
 
-@pytest.mark.slow
+@pytest.mark.slow(3)
 def test_very_many_nodes_are_read_and_beyond_the_limit_refused() -> None:
     count = sample(5_000, 100_000)
     leaves = [

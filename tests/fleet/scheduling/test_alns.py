@@ -83,6 +83,7 @@ def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
     assert found.cost.total <= exact.cost.total + 0.05
 
 
+@pytest.mark.slow(2)
 def test_transfer_makes_possible_what_no_robot_can_do_alone() -> None:
     robots = (
         Robot("left", 0, 0, 1.0, Window(0.0, 40.0)),

@@ -65,7 +65,7 @@ def solved(problem: Problem, seconds: float = 6.0, **options: object) -> Solutio
     return solve_alns(problem, seconds=seconds, clock=EvenClock(), **options)  # type: ignore[arg-type]
 
 
-@pytest.mark.slow
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("seed", sample((1, 4, 5, 7, 8, 9, 10, 11), range(16)))
 def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
     problem = drawn_problem(seed)
@@ -82,6 +82,7 @@ def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
     assert found.cost.total <= exact.cost.total + 0.05
 
 
+@pytest.mark.slow(2)
 @given(
     items=corridor_items(),
     seed=st.integers(0, 99),

@@ -72,6 +72,7 @@ def walled_row(*, doors: bool) -> Building:
     return Building(BuildingDocument.model_validate_json(json.dumps(document)))
 
 
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("floors", [1, 2])
 def test_whatever_happens_is_on_the_way_of_what_is_asked_for_then(seed: int, floors: int) -> None:
@@ -94,6 +95,7 @@ def test_whatever_happens_is_on_the_way_of_what_is_asked_for_then(seed: int, flo
     assert (WrongFloor in kinds) == (floors > 1)
 
 
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("seed", range(2))
 def test_a_thing_changes_robots_or_it_is_told_that_none_does(seed: int) -> None:
     building, shift = office_and_shift(2, seed)

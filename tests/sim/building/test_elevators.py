@@ -74,6 +74,7 @@ def test_ride_elevator_ends_before_the_elevator_on_the_other_floor() -> None:
     assert bench.of(Finished)[-1].found_in_place
 
 
+@pytest.mark.slow
 def test_who_has_got_out_calls_the_elevator_no_more() -> None:
     bench = BuildingBench(office(Caller.ROBOTS))
     cabin = bench.world.elevators.cabins["lift1"]
@@ -132,6 +133,7 @@ def test_the_wrong_floor_is_noticed_and_left_by_another_ride() -> None:
     assert bench.world.touches == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", sample([3], [3, 4]))
 def test_robots_that_want_one_elevator_ride_one_after_the_other(seed: int) -> None:
     bench = BuildingBench(office(Caller.ROBOTS, floors=2, robots=3, seed=seed), seed=seed)

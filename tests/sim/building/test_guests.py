@@ -84,6 +84,7 @@ def test_somebody_is_met_and_arrives_with_the_robot() -> None:
     assert not bench.of(IssueDetected)
 
 
+@pytest.mark.slow
 def test_robot_and_person_ride_together() -> None:
     bench = bench_of(floors=2, dawdling=0.0)
     meet(bench)
@@ -101,6 +102,7 @@ def test_robot_and_person_ride_together() -> None:
     assert bench.world.touches == 0
 
 
+@pytest.mark.slow
 def test_the_elevator_waits_for_who_is_still_outside_and_the_robot_asks_for_them() -> None:
     bench = bench_of(floors=2, dawdling=0.0)
     meet(bench)
@@ -124,6 +126,7 @@ def test_the_elevator_waits_for_who_is_still_outside_and_the_robot_asks_for_them
     assert is_at(bench, "F2-201")
 
 
+@pytest.mark.slow
 def test_who_is_left_on_another_floor_is_met_near_the_elevator_there() -> None:
     bench = bench_of(floors=2, dawdling=0.0)
     meet(bench)
@@ -147,6 +150,7 @@ def test_who_is_left_on_another_floor_is_met_near_the_elevator_there() -> None:
     assert away_m(bench) <= CAUGHT_UP_M + 0.2
 
 
+@pytest.mark.slow
 def test_who_has_no_room_in_the_cabin_rides_alone_and_is_met_at_its_door(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -217,6 +221,7 @@ def test_some_come_late_and_are_met_all_the_same() -> None:
     assert late
 
 
+@pytest.mark.slow
 def test_who_was_led_away_is_met_where_they_are_asked_for_the_next_time() -> None:
     bench = bench_of(dawdling=0.0)
     for place in ("F1-104", "F1-103"):
@@ -260,7 +265,7 @@ def test_a_snapshot_from_before_anybody_was_escorted_is_still_read() -> None:
     assert bench.world.guests.of_robots == {}
 
 
-@pytest.mark.slow(30)
+@pytest.mark.slow(3)
 @settings(max_examples=sample(4, 12), deadline=None, suppress_health_check=list(HealthCheck))
 @given(
     seed=st.integers(0, 20),
@@ -286,6 +291,7 @@ def test_no_robot_drives_on_for_long_without_who_follows(
     assert bench.world.touches == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", sample(range(1), range(2)))
 def test_nobody_is_pushed_out_of_a_cabin_where_it_has_no_door(seed: int) -> None:
     bench = bench_of(seed, floors=2, dawdling=0.0)

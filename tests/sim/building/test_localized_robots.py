@@ -11,7 +11,7 @@ from mend.robots.link.messages import Finished, IssueDetected, Look, Looked, Res
 from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.scene import scene_of
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.slow(2)
 
 
 def localized(rooms: int = 6, seed: int = 2, **options: float) -> BuildingBench:

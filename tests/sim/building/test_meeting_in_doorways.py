@@ -70,6 +70,7 @@ def test_nobody_says_that_an_open_door_is_shut() -> None:
     assert [each.issue for each in bench.of(IssueDetected)] == ["blocked", "blocked"]
 
 
+@pytest.mark.slow
 def test_who_is_asked_pushes_one_aside_and_both_get_on() -> None:
     bench = untold()
     assert bench.world.intervene(CLEAR) == ""

@@ -32,6 +32,7 @@ def assert_nobody_is_touched(bench: BuildingBench) -> None:
                 assert away_m >= radius_m + RADIUS_M - 1e-9
 
 
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("seed", sample([3], [3, 4, 5]))
 def test_nobody_is_touched_while_robots_and_people_are_about(seed: int) -> None:
     bench = busy(seed, shut_doors=0.5)
