@@ -185,7 +185,8 @@ def described_app(lifespan: Lifespan | None = None) -> FastAPI:
         redoc_url=None,
     )
     for module in ROUTES:
-        app.include_router(module.router)
+        # Each is whole in its module; `include_router` would make every one of them once more.
+        app.router.routes.extend(module.router.routes)
     answer_errors_with_problems(app, console.page_of_nothing)
     _describe(app)
     return app

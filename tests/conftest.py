@@ -1,5 +1,6 @@
 """What all tests share: the order in which processes take them, and patience with busy machines."""
 
+import gc
 import os
 import sys
 from collections.abc import Iterator
@@ -13,12 +14,22 @@ from hypothesis import settings
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
+# What is collected stays for good: nothing of it is garbage, now or ever.
+gc.disable()
+
 # No property fails for how long it takes, and no request within a minute.
 settings.register_profile("busy", deadline=None)
 settings.load_profile("busy")
 for client in (httpx.AsyncClient, httpx.Client):
     assert client.__init__.__kwdefaults__ is not None
     client.__init__.__kwdefaults__["timeout"] = httpx.Timeout(60.0)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_finish() -> None:
+    """Garbage is looked for only among what tests make: going through all tests takes long."""
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.hookimpl(trylast=True)

@@ -132,8 +132,8 @@ class FloorWays:
         if floor not in self._walls:
             self._walls[floor] = _sampled(self._building.floors[floor].wall_segments, self._frame)
         points = self._walls[floor]
-        away = np.abs(points - np.array([here.x, here.y]))
-        return np.asarray(points[away.max(axis=1, initial=0.0) < _AROUND_M])
+        near = np.abs(points[:, 0] - here.x) < _AROUND_M
+        return np.asarray(points[near & (np.abs(points[:, 1] - here.y) < _AROUND_M)])
 
     def door_at(self, here: BasePose, ahead: Point) -> str | None:
         """The door, or the elevator, between a pose and a point ahead."""

@@ -225,4 +225,4 @@ DOORS = (
 
 router = APIRouter()
 for each in DOORS:
-    router.include_router(_router(each))
+    router.routes.extend(_router(each).routes)

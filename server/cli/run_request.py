@@ -45,6 +45,9 @@ def closed_settings() -> Settings:
         "host": "127.0.0.1",
         "port": 0,
         "token": SecretStr(secrets.token_urlsafe(32)),
+        # Nobody is there to hear a prompt, or to answer one by voice.
+        "speech_voice": "none",
+        "speech_recognition": False,
     }
     return load_settings(log_level="warning", **closed)
 

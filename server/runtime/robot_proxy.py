@@ -1,6 +1,7 @@
 """One robot of a run, as the run sees it: what it was last told, and what it last saw."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, Protocol
@@ -277,7 +278,7 @@ class RobotProxy:
         """Note what a look saw; returns its purpose if it is the look that was last asked for."""
         self.blind = looked.blind
         if looked.blind is None:
-            self.seen = {name: _in_scene(self.frame, each) for name, each in looked.objects.items()}
+            self.seen = _in_scene(self.frame, looked.objects)
             self.seen_at = time
             self.last_seen |= {name: (time, each) for name, each in self.seen.items()}
         self.held, self.felt = looked.held, looked.felt
@@ -295,7 +296,13 @@ class RobotProxy:
         return self.purpose
 
 
-def _in_scene(frame: Frame, seen: Sighting) -> Sighting:
+def _in_scene(frame: Frame, seen: Mapping[str, Sighting]) -> dict[str, Sighting]:
+    if frame == Frame():
+        return dict(seen)
+    return {name: _turned(frame, each) for name, each in seen.items()}
+
+
+def _turned(frame: Frame, seen: Sighting) -> Sighting:
     x, y = frame.to_scene(seen.x, seen.y)
     return seen.model_copy(update={"x": x, "y": y, "yaw": seen.yaw + frame.yaw})
 

@@ -2,6 +2,7 @@
 
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -52,6 +53,12 @@ class FingerHulls:
                 _moved(self._hulls[link], self._from_base @ self._chains[link].pose(turned))
             )
         return pieces
+
+
+@cache
+def pr2_finger_hulls(urdf: Path) -> FingerHulls:
+    """Those of the PR2 in this file; read on the first call, as every world has the same."""
+    return FingerHulls(urdf)
 
 
 def drawn_hull(urdf: Path, link: str) -> Hull:

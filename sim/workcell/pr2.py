@@ -10,7 +10,7 @@ from mend.robots.arm.motion.kinematics import Joints, KinematicChain
 from mend.robots.body import Matrix4
 from mend.sim.base_frame import base_in_scene
 from mend.sim.workcell.arm_dynamics import LinkInertia, Pr2ArmDynamics
-from mend.sim.workcell.finger_hulls import FingerHulls, Hull
+from mend.sim.workcell.finger_hulls import Hull, pr2_finger_hulls
 from mend.sim.workcell.gripper import FINGERS_OPEN_RAD, inner_side_m
 from mend.sim.workcell.physics import Client, Point, to_matrix, yaw_quaternion
 from mend.sim.workcell.quiet import silenced
@@ -87,7 +87,7 @@ class Pr2:
         self.tool = KinematicChain(urdf, TOOL_FRAME, ARM_JOINTS)
         self.collisions = CollisionModel(urdf, ARM_JOINTS, TOOL_FRAME)
         self._forearm_camera = KinematicChain(urdf, FOREARM_CAMERA_FRAME, _FOREARM_JOINTS)
-        self._hulls = FingerHulls(urdf)
+        self._hulls = pr2_finger_hulls(urdf)
         self._set_up_dynamics(link_of)
         self._paint(link_of)
         self.place_arm(np.array(NEUTRAL_RAD))

@@ -38,7 +38,7 @@ FAMILIES = (
 )
 
 
-@pytest.mark.slow(45)
+@pytest.mark.slow(12)
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can mount a disk of its own")
 async def test_a_service_among_faults_loses_doubles_and_invents_nothing(tmp_path: Path) -> None:
     told: list[str] = []

@@ -41,6 +41,9 @@ from mend.tasks.intervention import Act
 
 FIRST_JPEG, SECOND_JPEG = b"\xff\xd8\xff first \xff\xd9", b"\xff\xd8\xff second \xff\xd9"
 
+PARTS = {f"part_{number}": 0.01 * number for number in range(100)}
+"""What there is on the table, with its y."""
+
 
 class Sink(Protocol):
     async def robot_connected(self, robot: str, hello: Hello) -> None: ...
@@ -319,12 +322,13 @@ class PretendRobots:
             if not fulfilled:
                 # What is queued may be the deed that is being watched for.
                 robot.time += look.within_s
+        unseen = PARTS.keys() if robot.blind else robot.hidden | robot.lost
         seen = {
             name: Sighting(
                 x=0.5 if name in robot.placed else 0.4, y=y, z=0.7, yaw=0, time=robot.time
             )
-            for name, y in ((f"part_{i}", 0.01 * i) for i in range(100))
-            if name not in robot.hidden | robot.lost and not robot.blind
+            for name, y in PARTS.items()
+            if name not in unseen
         }
         await self.report(
             robot,

@@ -79,6 +79,8 @@ class ServiceProcess:
             "MEND_DATA_DIR": str(self._folder),
             "MEND_PORT": str(self._port),
             "MEND_LOG_LEVEL": "warning",
+            # Nobody listens: a voice would say every prompt in a process of its own.
+            "MEND_SPEECH_VOICE": "none",
             **({} if self._token is None else {"MEND_TOKEN": self._token}),
             **self._environment,
         }

@@ -16,7 +16,8 @@ CLIENTS = 80
 @pytest.mark.slow
 async def test_without_descriptors_the_service_waits_and_goes_on_by_itself(tmp_path: Path) -> None:
     limits = {"MEND_LIMITS__STRANGERS_PER_ADDRESS": "1000", "MEND_LIMITS__HEAD_S": "2"}
-    async with service_process(tmp_path, descriptors=DESCRIPTORS, **limits) as service:
+    chosen = {**limits, "MEND_SPEECH_VOICE": "auto"}
+    async with service_process(tmp_path, descriptors=DESCRIPTORS, **chosen) as service:
         with ExitStack() as stack:
             for _ in range(CLIENTS):
                 stack.enter_context(socket.create_connection(("127.0.0.1", service.port)))

@@ -28,7 +28,7 @@ PACKAGES = (
 ASSET = re.compile(r'"/(assets/[^"]+)"')
 IMPORT = re.compile(r"""(?:\bfrom|\bimport)\s*\(?\s*["']\./([\w.-]+)["']""")
 
-pytestmark = pytest.mark.slow(18)
+pytestmark = pytest.mark.slow(6)
 
 
 @pytest.fixture(scope="module")

@@ -311,6 +311,7 @@ def test_a_run_has_a_service_of_its_own_that_nobody_else_can_use(
     assert first.token != second.token
     assert first.journal_path != second.journal_path
     assert first.journal_path.parent == data_dir / "runs"
+    assert (first.speech_voice, first.speech_recognition) == ("none", False)
 
 
 def test_a_task_file_is_run_under_its_own_name(
@@ -601,7 +602,7 @@ def test_the_command_stays_quiet_when_its_reader_goes_away(data_dir: Path) -> No
         assert process.wait() != 0
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_the_papers_scenario_is_run_for_real_and_finishes(data_dir: Path) -> None:
     arguments = "run eket --world tabletop --scenario eket_paper --speed max --seed 7 --json"
     with begin(data_dir, *arguments.split()) as process:
@@ -627,7 +628,7 @@ def test_the_papers_scenario_is_run_for_real_and_finishes(data_dir: Path) -> Non
     assert isinstance(events[-1], ev.RunFinished)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(3)
 def test_ctrl_c_aborts_a_real_run_which_its_journal_then_tells(data_dir: Path) -> None:
     arguments = "run eket --world tabletop --answers none --json"
     with begin(data_dir, *arguments.split()) as process:
@@ -642,7 +643,7 @@ def test_ctrl_c_aborts_a_real_run_which_its_journal_then_tells(data_dir: Path) -
         assert isinstance(reader.events(first.run)[-1], ev.RunAborted)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_serve_says_where_it_listens_and_stops_when_told(
     data_dir: Path, number: signal.Signals
@@ -742,27 +743,25 @@ def test_what_a_robot_cannot_do_is_told_with_world_file_and_line(
     assert mend("check", str(task), "--world", "mars").code == 2
 
 
-def test_a_run_that_the_robot_cannot_do_is_refused(data_dir: Path, tmp_path: Path) -> None:
+def test_a_run_that_the_robot_cannot_do_is_refused(mend: Mend, tmp_path: Path) -> None:
     task = write_file(tmp_path, TASK)
     scene = tmp_path / "scenes" / "bench.yaml"
     scene.write_text(SCENE.replace("[0.05, 0.05, 0.08]", "[0.09, 0.09, 0.08]"))
-    with begin(data_dir, "run", str(task), "--world", "tabletop", "--json") as process:
-        out, err = process.communicate(timeout=120)
-    assert (process.returncode, out) == (2, "")
-    assert "cannot do the tree 'just_one' in the scene 'bench'" in err
-    assert f"mend: {scene}:3: " in err
-    assert "takes 12 to 78 mm" in err
+    outcome = mend("run", str(task), "--world", "tabletop", "--json")
+    assert (outcome.code, outcome.out) == (2, "")
+    assert "cannot do the tree 'just_one' in the scene 'bench'" in outcome.err
+    assert f"mend: {scene}:3: " in outcome.err
+    assert "takes 12 to 78 mm" in outcome.err
 
 
-def test_a_run_with_an_option_that_its_world_has_not_is_refused(data_dir: Path) -> None:
-    words = "run eket --world tabletop --json --option camera_nois=4"
-    with begin(data_dir, *words.split()) as process:
-        out, err = process.communicate(timeout=120)
-    assert (process.returncode, out) == (2, "")
-    assert "the world 'tabletop' has no option 'camera_nois'; it has 'camera_noise', " in err
+def test_a_run_with_an_option_that_its_world_has_not_is_refused(mend: Mend) -> None:
+    outcome = mend("run", "eket", "--world", "tabletop", "--json", "--option", "camera_nois=4")
+    assert (outcome.code, outcome.out) == (2, "")
+    told = "the world 'tabletop' has no option 'camera_nois'; it has 'camera_noise', "
+    assert told in outcome.err
 
 
-@pytest.mark.slow
+@pytest.mark.slow(3)
 def test_a_random_scene_is_printed_with_its_tree_and_can_be_run(
     mend: Mend, data_dir: Path, tmp_path: Path
 ) -> None:

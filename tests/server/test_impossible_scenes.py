@@ -216,6 +216,7 @@ def test_what_is_impossible_is_refused_with_the_right_sentence(
     assert any(sentence in each for each in sentences), sentences
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("document", "tree"), [
     pytest.param(*case[1:3], id=case[0]) for case in IMPOSSIBLE if case[0] in ANY_REACH
 ])  # fmt: skip
@@ -263,6 +264,7 @@ def test_what_is_possible_is_never_refused(
     assert told(document, tree, world) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES.names())
 def test_every_scene_of_the_library_is_possible_by_itself(name: str) -> None:
     scene: Scene = built_in_scene(name)

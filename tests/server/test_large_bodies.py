@@ -74,7 +74,7 @@ async def test_of_an_endless_key_the_beginning_is_told(operator: httpx.AsyncClie
     assert refused.json()["errors"] == [f"body.{'k' * KEY_CHARS}: is not known here"]
 
 
-@pytest.mark.parametrize("count", [12_000, 500_000])
+@pytest.mark.parametrize("count", [12_000, 100_000])
 async def test_a_body_of_too_many_values_is_refused_before_its_mistakes_are_sought(
     service: ServiceUnderTest, operator: httpx.AsyncClient, count: int
 ) -> None:

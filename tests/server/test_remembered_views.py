@@ -25,7 +25,7 @@ SERVE = "{name: serve, scene: bench, tree: {behavior: pick_and_place, object: cu
 
 
 class Shelf:
-    """A library with a folder of scenes, which counts what is checked in its process."""
+    """A library with a folder of scenes, which counts what would be checked in its process."""
 
     def __init__(self, folder: Path) -> None:
         self.scene = folder / "bench.yaml"
@@ -37,12 +37,11 @@ class Shelf:
             WorldChecks({}),
             utc_now=at_noon,
         )
-        self._run = self.library.off_loop.run
         self.library.off_loop.run = self._counted  # type: ignore[method-assign]
 
-    async def _counted(self, chars, work, *args):
+    async def _counted(self, chars, work, *args):  # noqa: ARG002
         self.checks += 1
-        return await self._run(chars, work, *args)
+        return await asyncio.to_thread(work, *args)
 
     async def tree(self, name: str = "serve") -> str:
         return (await self.library.trees.get(name)).view().text

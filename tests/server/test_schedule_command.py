@@ -226,6 +226,7 @@ def test_schema_of_delivery_files_is_json(mend: Any) -> None:
     assert json.loads(out)["title"] == "DeliveryDocument"
 
 
+@pytest.mark.slow
 def test_what_serves_and_checks_delivery_files_does_without_or_tools() -> None:
     program = (
         "import sys; sys.modules['ortools'] = None; import mend.server.composition; "

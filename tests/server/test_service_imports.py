@@ -3,6 +3,8 @@
 import subprocess
 import sys
 
+import pytest
+
 _LOADED = """
 import sys
 import mend.server.composition
@@ -10,6 +12,7 @@ print(*sorted({"numba", "scipy", "pybullet", "pinocchio", "coal", "ortools"} & s
 """
 
 
+@pytest.mark.slow
 def test_what_robots_and_schedules_reckon_with_is_left_to_their_processes() -> None:
     loaded = subprocess.run(
         [sys.executable, "-c", _LOADED], capture_output=True, text=True, check=True

@@ -49,7 +49,7 @@ print(*sorted(compiled() - before))
 """
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 @pytest.mark.parametrize("world", ["tabletop", "workcell"])
 def test_nothing_is_left_to_compile_for_a_robot_at_work(world: str) -> None:
     if world == "workcell":

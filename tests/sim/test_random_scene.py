@@ -150,7 +150,7 @@ def test_the_same_seed_draws_the_same_scene_and_another_one_another():
     assert random_scene(5) != random_scene(6)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(2)
 def test_what_is_drawn_covers_the_limits():
     scenes = [random_scene(seed).scene for seed in range(40)]
     parts = [part for scene in scenes for part in scene.objects.values()]

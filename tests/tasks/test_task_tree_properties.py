@@ -258,7 +258,7 @@ class TreeAgainstFullEvaluation(RuleBasedStateMachine):
 
 TestTreeAgainstFullEvaluation = pytest.mark.slow(TreeAgainstFullEvaluation.TestCase)
 TestTreeAgainstFullEvaluation.settings = settings(
-    max_examples=sample(50, 150), stateful_step_count=50, deadline=None
+    max_examples=sample(25, 150), stateful_step_count=50, deadline=None
 )
 
 

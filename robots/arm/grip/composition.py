@@ -7,7 +7,7 @@ reading, however many pixels it has: its pixels share light, focus and pose.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 _LEAST_SHARE = 0.02
 """Shares nearer to 0 say no more: a rim or a reflection always remains."""
@@ -36,6 +36,13 @@ class _Component:
     own: float
     other: float
     rest: float
+    log_norm: float = field(init=False)
+    """Of its density, which is asked for in every reading of a hand."""
+
+    def __post_init__(self) -> None:
+        alphas = (self.own, self.other, self.rest)
+        log_norm = math.lgamma(sum(alphas)) - sum(math.lgamma(each) for each in alphas)
+        object.__setattr__(self, "log_norm", log_norm)
 
 
 _COMPONENTS: Mapping[str, Sequence[_Component]] = {
@@ -63,13 +70,12 @@ def log_density(composition: Composition, what: str) -> float:
     """The log density of the shares if `right`, `other` or `nothing` is between the fingers."""
     shares = [max(each, _LEAST_SHARE) for each in (composition.own, composition.other)]
     shares.append(max(composition.rest, _LEAST_SHARE))
-    logs = [math.log(each / sum(shares)) for each in shares]
+    whole = sum(shares)
+    own, other, rest = (math.log(each / whole) for each in shares)
     density = 0.0
-    for component in _COMPONENTS[what]:
-        alphas = (component.own, component.other, component.rest)
-        log_norm = math.lgamma(sum(alphas)) - sum(math.lgamma(each) for each in alphas)
-        exponent = sum((alpha - 1.0) * each for alpha, each in zip(alphas, logs, strict=True))
-        density += component.weight * math.exp(log_norm + exponent)
+    for each in _COMPONENTS[what]:
+        exponent = (each.own - 1.0) * own + (each.other - 1.0) * other + (each.rest - 1.0) * rest
+        density += each.weight * math.exp(each.log_norm + exponent)
     return math.log(density)
 
 

@@ -1,6 +1,7 @@
 """Where a held part must be seen in the forearm picture: its outline but for what hides it."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -105,6 +106,7 @@ def in_tool(
     return found
 
 
+@lru_cache(maxsize=256)
 def _corners(box: SeenBox) -> NDArray[np.float64]:
     return np.array([(x, y, z) for x, y in box.corners() for z in (box.bottom_z, box.top_z)])
 

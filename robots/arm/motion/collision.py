@@ -7,6 +7,7 @@ import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -55,15 +56,8 @@ class CollisionModel:
 
     def __init__(self, urdf: Path, joints: Sequence[str], tool_frame: str) -> None:
         """`joints` are those of the arm, in the order of its joint angles."""
-        self._model = pin.buildModelFromUrdf(str(urdf))
+        self._model, self._links = _read(urdf, urdf.stat().st_mtime_ns)
         self._data = self._model.createData()
-        self._links = pin.buildGeomFromUrdf(
-            self._model, str(urdf), pin.GeometryType.COLLISION, package_dirs=[str(urdf.parent)]
-        )
-        for link in self._links.geometryObjects:
-            if isinstance(link.geometry, coal.BVHModelBase):
-                link.geometry.buildConvexHull(True, _QHULL_OPTIONS)
-                link.geometry = link.geometry.convex
         self._joints = list(joints)
         places = [self._model.joints[self._model.getJointId(each)] for each in joints]
         self._unlimited = np.array([place.nq == 2 for place in places])
@@ -162,6 +156,20 @@ class Surrounded:
             return []
         whole = self.arm.with_joints(self._whole, joints)
         return self.arm.hits(self._pairs, whole, first=first)
+
+
+@lru_cache(maxsize=4)
+def _read(urdf: Path, _changed_ns: int) -> tuple[Any, Any]:
+    """A robot's joints, and the hulls of its links: they stay as they are, for all robots alike."""
+    model = pin.buildModelFromUrdf(str(urdf))
+    links = pin.buildGeomFromUrdf(
+        model, str(urdf), pin.GeometryType.COLLISION, package_dirs=[str(urdf.parent)]
+    )
+    for link in links.geometryObjects:
+        if isinstance(link.geometry, coal.BVHModelBase):
+            link.geometry.buildConvexHull(True, _QHULL_OPTIONS)
+            link.geometry = link.geometry.convex
+    return model, links
 
 
 _FILTERING = Lock()

@@ -4,6 +4,7 @@ import math
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,7 @@ class KinematicChain:
     def __init__(self, urdf: Path, tip: str, joints: Sequence[str]) -> None:
         """Raises `WrongInputError` when `tip` is no link or a joint does not lead to it."""
         self.joints = tuple(joints)
-        links = _load_links(urdf)
+        links = _load_links(urdf, urdf.stat().st_mtime_ns)
         if tip not in links:
             raise WrongInputError(f"{urdf.name} has no link '{tip}'")
         offsets, axes, limits = [], [], []
@@ -110,8 +111,12 @@ class _UrdfJoint:
     limits: tuple[float, float]
 
 
-def _load_links(urdf: Path) -> dict[str, _UrdfJoint | None]:
-    """Every link's name with the joint above it; None for the root."""
+@lru_cache(maxsize=4)
+def _load_links(urdf: Path, _changed_ns: int) -> Mapping[str, _UrdfJoint | None]:
+    """Every link's name with the joint above it; None for the root.
+
+    A robot has many chains, and a whole robot is read in a hundredth of a second.
+    """
     robot = ElementTree.parse(urdf).getroot()
     links: dict[str, _UrdfJoint | None] = {
         link.get("name", ""): None for link in robot.findall("link")

@@ -88,7 +88,9 @@ def find_route(
     deal shorter.
     """
     corner = (np.round(np.array(here) / CELL_M) - _SIDE // 2) * CELL_M
-    near = np.abs(points - np.array(here)).max(axis=1, initial=0.0) < HALF_M + radius_m
+    reach_m = HALF_M + radius_m
+    near = np.abs(points[:, 0] - here[0]) < reach_m
+    near &= np.abs(points[:, 1] - here[1]) < reach_m
     weights = np.empty((_SIDE, _SIDE), np.uint8)
     kept = _marked(before - corner)
     _spread(weights, points[near] - corner, radius_m + spare_m, radius_m + TIGHT_M, kept)

@@ -21,6 +21,7 @@ class Polyline:
         keep = np.concatenate([[True], steps_m > 1e-9])
         self._corners = corners[keep]
         self._at_m = np.concatenate([[0.0], np.cumsum(steps_m[steps_m > 1e-9])])
+        self._ahead, self._lengths_m = np.diff(self._corners, axis=0), np.diff(self._at_m)
 
     @property
     def length_m(self) -> float:
@@ -42,8 +43,7 @@ class Polyline:
         """How far along it the point is that is nearest, between `from_m` and `to_m` along it."""
         if len(self._corners) == 1:
             return 0.0
-        begin, ahead = self._corners[:-1], np.diff(self._corners, axis=0)
-        lengths_m = np.diff(self._at_m)
+        begin, ahead, lengths_m = self._corners[:-1], self._ahead, self._lengths_m
         offset = np.array([x, y]) - begin
         along_m = np.einsum("ij,ij->i", offset, ahead) / lengths_m
         low = np.clip(from_m - self._at_m[:-1], 0.0, lengths_m)

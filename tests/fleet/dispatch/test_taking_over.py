@@ -4,6 +4,7 @@ import pytest
 from dispatch_office import asked, dispatcher_for, fleet_of, make_leg, only_leg, visit
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.errors import NotFoundError
 from mend.fleet.dispatch.dispatcher import Dispatcher
@@ -144,7 +145,7 @@ def test_nobody_has_people_call_an_elevator_so_that_others_need_not_be_asked(
     st.lists(st.permutations("abcde").map(lambda all_: all_[:2]), min_size=1, max_size=3),
     st.lists(st.tuples(st.integers(0, 3), st.integers(0, 3)), min_size=1, max_size=12),
 )
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=sample(25, 100))
 def test_whatever_is_taken_over_comes_to_its_end(
     starts: list[str], ways: list[list[str]], barred: list[tuple[int, int]]
 ) -> None:

@@ -22,9 +22,13 @@ from mend.fleet.scheduling.solution import Progress, Solution, Status
 from mend.fleet.scheduling.timing import earliest_schedule
 
 
-def solved(problem: Problem, **options: object) -> Solution:
+def solved(problem: Problem, seconds: float = 40.0, **options: object) -> Solution:
     """A search that does the same work in every run."""
-    return solve_alns(problem, seconds=40.0, clock=EvenClock(), **options)  # type: ignore[arg-type]
+    return solve_alns(problem, seconds=seconds, clock=EvenClock(), **options)  # type: ignore[arg-type]
+
+
+IN_VAIN_S = 4.0
+"""It gives up at the end of its time only: more of that would find as little."""
 
 
 def handed_over(problem: Problem) -> Schedule:
@@ -79,6 +83,7 @@ def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
     assert found.cost.total <= exact.cost.total + 0.05
 
 
+@pytest.mark.slow(2)
 def test_transfer_makes_possible_what_no_robot_can_do_alone() -> None:
     robots = (
         Robot("left", 0, 0, 1.0, Window(0.0, 40.0)),
@@ -90,7 +95,7 @@ def test_transfer_makes_possible_what_no_robot_can_do_alone() -> None:
     assert found.bound is None
     assert found.schedule is not None
     assert found.schedule.transfers == 1
-    alone = solved(problem, transfers=False)
+    alone = solved(problem, IN_VAIN_S, transfers=False)
     assert alone.status is Status.UNKNOWN
     assert alone.schedule is None
 
@@ -147,7 +152,7 @@ def test_item_aboard_stays_there_or_is_given() -> None:
 def test_item_that_nobody_can_deliver_stops_nothing() -> None:
     heavy = replace(parcel("heavy"), load=5.0)
     told: list[Progress] = []
-    found = solved(corridor(items=(parcel(), heavy)), on_progress=told.append)
+    found = solved(corridor(items=(parcel(), heavy)), IN_VAIN_S, on_progress=told.append)
     assert found.status is Status.UNKNOWN
     assert found.schedule is None
     assert told == []
@@ -172,7 +177,7 @@ def test_start_with_transfers_is_kept_where_no_new_ones_are_allowed() -> None:
     )
     problem = corridor(items=(parcel(),), robots=robots)
     start = handed_over(problem)
-    found = solved(problem, start=start, transfers=False)
+    found = solved(problem, IN_VAIN_S, start=start, transfers=False)
     assert found.schedule == start
 
 

@@ -10,6 +10,7 @@ from delivery_problems import CORRIDOR, HANDED_OVER, corridor, corridor_items, p
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from office_building import BuildingPlan, building_deliveries
+from sampled import sample
 from ticking_clock import TickingClock
 
 from mend.fleet.scheduling.checker import check
@@ -43,7 +44,7 @@ def two_robots(**fields: object) -> tuple[Robot, Robot]:
     ),
     duration_s=st.sampled_from((inf, 150.0)),
 )
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=sample(20, 60))
 def test_schedule_found_passes_the_checker(
     method: str, items: tuple[Item, ...], transfers: Transfers, weights: Weights, duration_s: float
 ) -> None:
@@ -200,7 +201,7 @@ def test_search_around_doors_mends_what_insertion_missed() -> None:
 
 @pytest.mark.parametrize("method", HEURISTICS)
 @given(items=corridor_items())
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=sample(15, 50))
 def test_heuristics_plan_around_doors(method: str, items: tuple[Item, ...]) -> None:
     problem = with_a_door(corridor(items=items, robots=two_robots()))
     found = solve(problem, method, seconds=60.0, clock=TickingClock())

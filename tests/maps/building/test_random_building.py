@@ -10,6 +10,7 @@ from mend.maps.building.drawing import floor_picture
 from mend.maps.building.random_building import MOST_FLOORS, MOST_ROOMS, random_building
 
 
+@pytest.mark.slow(2)
 @given(st.integers(0, 2**32), st.integers(1, 6), st.integers(1, MOST_ROOMS))
 def test_it_has_no_mistakes_and_as_many_rooms_as_were_asked_for(
     seed: int, floors: int, rooms: int

@@ -198,7 +198,7 @@ def test_all_of_it_from_the_command_line(tmp_path: Path) -> None:
     assert "--runs: " in mend("prune", "--runs", "0", "--journal", str(path))[1]
 
 
-@pytest.mark.slow(10)
+@pytest.mark.slow(7)
 async def test_a_backup_of_a_killed_service_goes_on_where_it_was(tmp_path: Path) -> None:
     target = tmp_path / "copy.db"
     async with service_process(tmp_path) as service:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from building_bench import BuildingBench, made_up
+from sampled import sample
 
 from mend.maps.building.building import Building, BuildingDocument, Caller
 from mend.maps.building.cabin import CORNER_M, cabin_walls, stop_of
@@ -73,10 +74,11 @@ def test_ride_elevator_ends_before_the_elevator_on_the_other_floor() -> None:
     assert bench.of(Finished)[-1].found_in_place
 
 
+@pytest.mark.slow
 def test_who_has_got_out_calls_the_elevator_no_more() -> None:
     bench = BuildingBench(office(Caller.ROBOTS))
     cabin = bench.world.elevators.cabins["lift1"]
-    for goal in ("F2-201", "F1-102", "F2-203", "F1-101", "F2-202"):
+    for goal in ("F2-201", "F1-102", "F2-203"):
         bench.reports.clear()
         bench.go("robot1", goal)
         bench.run()
@@ -131,7 +133,8 @@ def test_the_wrong_floor_is_noticed_and_left_by_another_ride() -> None:
     assert bench.world.touches == 0
 
 
-@pytest.mark.parametrize("seed", [3, 4])
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", sample([3], [3, 4]))
 def test_robots_that_want_one_elevator_ride_one_after_the_other(seed: int) -> None:
     bench = BuildingBench(office(Caller.ROBOTS, floors=2, robots=3, seed=seed), seed=seed)
     rooms = {"F1": "F2-201", "F2": "F1-101"}

@@ -49,14 +49,14 @@ def hours(leaps: bool, *, place: str, person: bool, **options: Any) -> tuple[lis
         bench.go("robot1", place, "meet_person", person="Ann")
     else:
         bench.go("robot1", place)
-    for pause_s in (7.03, 40.0, 170.5):
+    for pause_s in (7.03, 20.0, 60.5):
         bench.hold_until(bench.group.time_s() + pause_s)
         states.append(bench.world.snapshot())
         bench.world.intervene(Intervention(act=Act.RELEASE))
     return states, bench.cycles
 
 
-@pytest.mark.slow(6)
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("options", OPTIONS, ids=lambda each: "-".join(each))
 def test_a_leap_is_as_many_cycles_one_by_one(options: dict[str, Any]) -> None:
     person = "localizer" not in options

@@ -11,7 +11,7 @@ from mend.robots.link.messages import Finished, IssueDetected, Look, Looked, Res
 from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.scene import scene_of
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.slow(2)
 
 
 def localized(rooms: int = 6, seed: int = 2, **options: float) -> BuildingBench:
@@ -46,9 +46,9 @@ def test_who_believes_wrongly_where_it_is_touches_nothing() -> None:
     robot = bench.world.robots[0]
     assert robot.belief is not None
     wrong_by = np.random.default_rng(1)
-    for room in rooms_of(bench)[:3]:
+    for room in rooms_of(bench)[:2]:
         bench.go("robot1", room)
-        for _ in range(12):
+        for _ in range(8):
             at = robot.at
             wrong = np.array([at.x, at.y, at.yaw]) + wrong_by.normal(0.0, [0.6, 0.6, 0.3])
             robot.belief.whereabouts.start_anew(wrong, np.array(robot.odometer.pose), lost=False)
@@ -58,7 +58,7 @@ def test_who_believes_wrongly_where_it_is_touches_nothing() -> None:
 
 def carried_to_where_places_look_alike() -> tuple[BuildingBench, IssueDetected]:
     """Seeds are tried until the robot does not find out by itself."""
-    for seed in range(1, 12):
+    for seed in range(2, 12):
         bench = localized(rooms=8, seed=seed)
         bench.go("robot1", rooms_of(bench)[-1])
         bench.group.advance(4.0)

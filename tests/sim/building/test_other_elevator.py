@@ -22,6 +22,8 @@ from mend.robots.link.messages import (
 from mend.sim.building.elevator_bank import RobotElevators
 from mend.sim.building.scene import scene_of
 
+pytestmark = pytest.mark.slow(2)
+
 STOPS = {name: [f"F1/{name}", f"F2/{name}"] for name in ("lift1", "lift2")}
 SOON_S = 15.0
 

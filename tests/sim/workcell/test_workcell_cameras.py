@@ -18,8 +18,6 @@ from mend.sim.workcell.world import WorkcellWorld
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.scene import Pose, Scene
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def worlds(scene: Scene) -> Iterator[dict[str, WorkcellWorld]]:

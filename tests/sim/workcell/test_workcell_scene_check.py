@@ -47,6 +47,7 @@ LEAF = BehaviorNode(
 )
 
 
+@pytest.mark.slow(2)
 @pytest.mark.parametrize(
     ("at", "where", "to"),
     [

@@ -11,8 +11,6 @@ from mend.sim.workcell.world import WorkcellWorld
 from mend.tasks.intervention import Act
 from mend.tasks.scene import Pose, Scene
 
-pytestmark = pytest.mark.slow
-
 
 def rebuild(world: WorkcellWorld, scene: Scene) -> WorkcellWorld:
     """Another world, of another seed, rebuilt from a snapshot that went through JSON."""
