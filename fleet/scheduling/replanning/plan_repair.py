@@ -82,6 +82,10 @@ class PlanRepair:
         while pending:
             self._place(pending)
             pending = self._overload()
+            if pending:
+                # Where others give way there may be room for what had none.
+                pending += self.put_off
+                self.put_off = {}
 
     def reconsider(self, items: Sequence[int]) -> None:
         """Sell items again that are in routes, where that makes the whole cheaper."""

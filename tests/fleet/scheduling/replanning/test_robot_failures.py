@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import pytest
 from delivery_problems import corridor, parcel
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from mend.fleet.scheduling.problem import Item, Robot, Transfers, Visit
@@ -154,6 +154,15 @@ def test_robot_that_comes_back_without_a_fleet_around_it_goes_on() -> None:
     assert fleet.stops()["left"][0].begin_s == pytest.approx(510.0)
 
 
+def test_what_is_not_put_down_at_once_is_put_down_before_there_is_no_room_for_it() -> None:
+    items = (parcel("first", 0, 0), parcel("second", 0, 1), parcel("third", 1, 1))
+    fleet = observed(*items, robots=(Robot("left", 4, None, 2.0),))
+    happen(fleet, 0.0, SetOut("left"), StopMade("left"), SetOut("left"))
+    happen(fleet, 35.0, StopFailed("left", "b", 35.0))
+    assert {item.put_off for item in fleet.items.values()} == {None}
+    assert {stop.item for stop in fleet.stops()["left"]} == set(fleet.items)
+
+
 # --- whatever happens -----------------------------------------------------------------------------
 
 
@@ -225,6 +234,16 @@ ACTS = ("set_out", "do", "give_up", "fail", "back")
         st.tuples(st.sampled_from(ROBOTS), st.sampled_from(ACTS), st.sampled_from(PLACES)),
         max_size=30,
     ),
+)
+@example(
+    [(0, 0), (0, 1), (1, 1)],
+    [
+        ("left", "fail", "a"),
+        ("middle", "fail", "a"),
+        ("right", "set_out", "a"),
+        ("right", "do", "a"),
+        ("right", "set_out", "a"),
+    ],
 )
 @settings(deadline=None, max_examples=150, suppress_health_check=[HealthCheck.too_slow])
 def test_nothing_is_lost_or_brought_twice_whoever_fails_and_comes_back(
