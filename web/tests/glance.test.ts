@@ -19,7 +19,7 @@ function robot(state: RobotView["state"], of: string | null): RobotView {
 }
 
 function glance(seen: Partial<Seen>) {
-  return glanceOf({ connection: "connected", trouble: null, runs: [], robots: [], known: [], now: NOW, ...seen });
+  return glanceOf({ connection: "connected", trouble: null, runs: [], robots: [], ofFleets: new Set(), known: [], now: NOW, ...seen });
 }
 
 describe("the page where nothing is asked", () => {
@@ -44,6 +44,12 @@ describe("the page where nothing is asked", () => {
     expect(told.words).toBe("No robot asks anything, but not all is well.");
     expect(told.failures.map(({ id }) => id)).toEqual(["b", "c"]);
     expect(glance({ runs, known: ["b", "c"] }).sign).toBe("well");
+  });
+
+  it("leaves what robots of a fleet failed at to the fleet", () => {
+    const runs = [{ ...run("b", "failed"), robots: ["r1"] }];
+    expect(glance({ runs, ofFleets: new Set(["r1"]) }).sign).toBe("idle");
+    expect(glance({ runs, ofFleets: new Set(["r2"]) }).sign).toBe("bad");
   });
 
   it("no longer tells of what failed more than a day ago", () => {

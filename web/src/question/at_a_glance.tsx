@@ -1,5 +1,6 @@
 // Where no robot asks anything: whether the runs go on, what has failed, and which robots are gone.
 import { useEffect, useState } from "preact/hooks";
+import { fleets } from "../requests/fleets";
 import { ago, outcome, sentence } from "../run/run_words";
 import { noteKnown } from "../state/failures";
 import { knownFailures } from "../state/preferences";
@@ -11,6 +12,7 @@ import type { Event, RobotView, RunSummary } from "../wire/types";
 import { glanceOf, type Sign } from "./glance";
 import "./at_a_glance.css";
 
+const SHOWN_AT_MOST = 5;
 const COMES_OR_GOES: ReadonlySet<Event["type"]> = new Set(["robot_lost", "robot_back", "run_started"]);
 
 const SIGNS: Readonly<Record<Sign, string>> = {
@@ -28,6 +30,7 @@ export function AtAGlance() {
     ...seen,
     runs: runsRead.value ? [...runs.value.values()] : null,
     robots,
+    ofFleets: new Set(fleets.value?.flatMap((site) => site.robots.map(({ robot }) => robot))),
     now,
   });
   return (
@@ -42,9 +45,14 @@ export function AtAGlance() {
           {lost.map((each) => (
             <Lost key={each.robot} robot={each} />
           ))}
-          {failures.map((each) => (
+          {failures.slice(0, SHOWN_AT_MOST).map((each) => (
             <Failure key={each.id} run={each} now={now} />
           ))}
+          {failures.length > SHOWN_AT_MOST && (
+            <li>
+              <a href="/runs">And {failures.length - SHOWN_AT_MOST} more runs have failed.</a>
+            </li>
+          )}
         </ul>
       )}
       <p class="quiet">

@@ -24,17 +24,22 @@ export interface Seen {
   /** The newest runs, and those that go on; null until they were read. */
   readonly runs: readonly RunSummary[] | null;
   readonly robots: readonly RobotView[];
+  /** Robots of fleets: what they fail at their fleet gives to others, and its page tells. */
+  readonly ofFleets: ReadonlySet<string>;
   readonly known: readonly string[];
   readonly now: number;
 }
 
-export function glanceOf({ connection, trouble, runs, robots, known, now }: Seen): Glance {
+export function glanceOf({ connection, trouble, runs, robots, ofFleets, known, now }: Seen): Glance {
   if (connection !== "connected" || runs === null) {
     const more = connection === "connected" ? "Reading what the runs do." : "Questions may wait that are not seen here.";
     return { sign: "unknown", words: "Not known whether a robot asks anything.", more, failures: [], lost: [] };
   }
   const goingOn = runs.filter(({ status }) => status === "running" || status === "paused");
-  const failures = runs.filter((each) => hasJustFailed(each, now) && !known.includes(each.id));
+  const failures = runs.filter(
+    (each) =>
+      hasJustFailed(each, now) && !known.includes(each.id) && !each.robots.some((robot) => ofFleets.has(robot)),
+  );
   const waitedFor = new Set(goingOn.map(({ id }) => id));
   const lost = robots.filter(({ state, run }) => state === "lost" && run !== null && waitedFor.has(run));
   const more = goingOnWords(goingOn);
