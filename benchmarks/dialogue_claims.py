@@ -258,7 +258,7 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"(?<!until )I see my way free|My way is free|I see nothing in my way", _way_free),
     (r"I do not see my way free|I still see or feel something", _not_free),
     (r"I heard no answer", _nobody_answered),
-    (r"I have now (?:failed|been stopped|looked|tried|seen) (once|twice|\w+ times)", _so_often),
+    (r"I have now [a-z ]*?\b(once|twice|\w+ times)", _so_often),
     (r"try again \(attempt (\d+) of \d+\)", _next_try),
     (r"I (?:go on with|take) (.*?) (?:first|instead)", _then_with),
     (r"[Tt]he task ends here", _ends),

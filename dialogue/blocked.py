@@ -35,7 +35,7 @@ FELT = Offer(
     request="Please clear the way of my arm. I look whether it is free.",
     resolution=Resolution.ROBOT_FINISH,
     thanks="Thank you. My way is free.",
-    unchanged="I do not see what held up my arm, and nothing holds it now.",
+    unchanged="I do not see what held up my arm.",
     not_seen="I still see or feel something in my way. Are you still clearing it?",
     put_right={},
 )

@@ -59,8 +59,11 @@ class Acts(ABC, Generic[P, At]):
 
     def intervene(self, intervention: Intervention) -> str:
         """Start an intervention; an empty string, or one sentence that says why not."""
+        way = self._ways.get(intervention.act)
+        if way is None:
+            return f"there is nothing at a table for which anybody could do '{intervention.act}'"
         try:
-            self._ways[intervention.act](intervention)
+            way(intervention)
         except Impossible as reason:
             return str(reason)
         return ""

@@ -60,6 +60,18 @@ _WITHOUT_OBJECT = (
     Act.MISDIRECT,
 )
 _OF_WAYS = (Act.BAR, Act.CLEAR)
+OF_BUILDINGS = frozenset(
+    {
+        Act.PUT_IN,
+        Act.TAKE_OUT,
+        Act.CHARGE,
+        Act.BAR,
+        Act.CLEAR,
+        Act.SEND_PERSON,
+        Act.MISDIRECT,
+    }
+)
+"""What people do in buildings only."""
 PlaceOfBuilding = Annotated[str, Field(min_length=1, max_length=130)]
 """A place of a building with its floor, as `F1/hall`."""
 

@@ -10,7 +10,7 @@ from mend.documents.document import DocumentError, LinedMapping, read_document, 
 from mend.documents.problem import InvalidFileError, Problem
 from mend.documents.validation import find_line, show_kind, validate_part
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
-from mend.tasks.intervention import Act
+from mend.tasks.intervention import OF_BUILDINGS, Act
 from mend.tasks.library import SCENARIOS
 from mend.tasks.scenario import Scenario, Trigger
 from mend.tasks.scene import Scene
@@ -113,6 +113,10 @@ def _missing_in_scene(scenario: Scenario, scene: Scene) -> list[Misfit]:
         misfits += unknown("object", name, scene.objects, "scene")
     for index, each in enumerate(scenario.interventions):
         where = ("interventions", index)
+        if each.do.act in OF_BUILDINGS and not scene.setting:
+            do = (*where, "do")
+            message = f"'{each.do.act}' is for buildings, and the scene '{scene.name}' is none"
+            misfits.append(Misfit((*do, "act"), f"{_spoken(do)}: {message}"))
         if each.when is not None:
             misfits += unknown("object", each.when.object, scene.objects, *where, "when")
         misfits += unknown("object", each.do.object, scene.objects, *where, "do")

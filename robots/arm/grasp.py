@@ -127,7 +127,7 @@ def _heights(
 def _misfit(part: Part, width_m: float, gripper: GripperModel) -> str:
     extent = "is" if width_m > gripper.max_width_m else "is only"
     return (
-        f"{_held(part)} {extent} {width_m * _MM:.0f} mm wide at its narrower side; this gripper "
+        f"{_held(part)} {extent} {width_m * _MM:.3g} mm wide at its narrower side; this gripper "
         f"takes {gripper.min_width_m * _MM:.0f} to {gripper.max_width_m * _MM:.0f} mm"
     )
 

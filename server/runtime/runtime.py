@@ -52,7 +52,7 @@ from mend.server.runtime.views import (
     Snapshot,
 )
 from mend.tasks.definition import TaskTreeDefinition
-from mend.tasks.intervention import Intervention
+from mend.tasks.intervention import OF_BUILDINGS, Intervention
 from mend.tasks.scenario import Person, Scenario
 from mend.tasks.scene import Scene
 
@@ -430,6 +430,10 @@ def _person_of(state: RunState, scenario: Scenario | None) -> Person:
 
 
 def _check_intervention(scene: Scene, intervention: Intervention) -> None:
+    if intervention.act in OF_BUILDINGS and not scene.setting:
+        raise WrongInputError(
+            f"'{intervention.act}' is for buildings, and the scene '{scene.name}' is none"
+        )
     if intervention.object is not None and intervention.object not in scene.objects:
         raise WrongInputError(f"the scene '{scene.name}' has no object '{intervention.object}'")
     if intervention.place is not None and intervention.place not in scene.places:

@@ -126,6 +126,17 @@ def test_an_act_of_placing_says_where() -> None:
     assert misfit.message == "interventions[0].do: act 'place' needs a 'place'"
 
 
+@pytest.mark.parametrize("setting", [{}, {"building": "office"}])
+def test_an_act_of_buildings_is_told_where_the_scene_is_none(setting: dict[str, str]) -> None:
+    charge = GOOD.replace("{act: steal, object: pink_bar}", "{act: charge}")
+    cup = SceneObject(color=(1.0, 0.0, 0.0), size=(0.1, 0.1, 0.1), pose=Pose(x=0.5, y=0.0))
+    scene = Scene(name="tea", objects={"pink_bar": cup}, places={}, setting=setting)
+    scenario = check_scenario_text(charge, source="mine.yaml")
+    told = [each.message for each in find_misfits(scenario, TREE, scene, {"pick_and_place": 8})]
+    sentence = "interventions[0].do: 'charge' is for buildings, and the scene 'tea' is none"
+    assert (sentence in told) is (setting == {})
+
+
 def test_names_that_the_scene_has_not_are_told() -> None:
     cup = SceneObject(color=(1.0, 0.0, 0.0), size=(0.1, 0.1, 0.1), pose=Pose(x=0.5, y=0.0))
     scene = Scene(name="tea", objects={"cup": cup}, places={"tray": Place(pose=cup.pose)})

@@ -9,7 +9,7 @@ from pretend_robots import PretendRobots
 from pretend_service import PretendService, pretend_service
 from task_documents import definition_of
 
-from mend.errors import ConflictError
+from mend.errors import ConflictError, WrongInputError
 from mend.robots.link.messages import Intervene
 from mend.server.journal import events as ev
 from mend.server.runtime.interventions import MOST_WAITING
@@ -173,3 +173,15 @@ async def test_a_run_remembers_nothing_of_what_was_accepted_and_done() -> None:
         assert len(await interventions(service, run)) == 2
     assert not state.accepted
     assert not state.intervened
+
+
+async def test_what_is_done_in_buildings_only_is_refused_and_nobody_hears_of_it() -> None:
+    async with service_with() as service:
+        run = await start(service)
+        await service.runtime.pause(run.id)
+        with pytest.raises(WrongInputError, match="'charge' is for buildings, and the scene"):
+            await service.runtime.intervene(run.id, Intervention(act=Act.CHARGE))
+        await service.runtime.resume(run.id)
+        await service.runtime.wait_for_end(run.id)
+        assert await interventions(service, run) == []
+        assert told(service, run) == []

@@ -108,6 +108,18 @@ def test_move_puts_a_part_anywhere_on_the_table(world: TabletopWorld) -> None:
     assert position(world, "red") == pytest.approx((0.8, 0.2, TABLE_M))
 
 
+WAY = {"between": ("F1/hall", "F1/lobby")}
+OF_BUILDINGS: list[tuple[Act, dict[str, object]]] = [
+    (Act.PUT_IN, {}),
+    (Act.TAKE_OUT, {}),
+    (Act.CHARGE, {}),
+    (Act.BAR, WAY),
+    (Act.CLEAR, WAY),
+    (Act.SEND_PERSON, {}),
+    (Act.MISDIRECT, {"elevator": "e1"}),
+]
+
+
 @pytest.mark.parametrize(
     ("act", "name", "more", "sentence"),
     [
@@ -116,6 +128,10 @@ def test_move_puts_a_part_anywhere_on_the_table(world: TabletopWorld) -> None:
         (Act.PLACE, "red", {"place": "roof"}, "the scene has no place 'roof'"),
         (Act.MOVE, "red", {"to": Pose(x=3.0, y=0.0)}, "(3.0, 0.0) is not on the table"),
         (Act.RELEASE, None, {}, "nobody stands in the way"),
+        *(
+            (act, None, more, f"there is nothing at a table for which anybody could do '{act}'")
+            for act, more in OF_BUILDINGS
+        ),
     ],
 )
 def test_what_cannot_be_done_is_said_and_changes_nothing(

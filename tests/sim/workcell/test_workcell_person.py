@@ -36,6 +36,11 @@ def test_an_object_that_the_scene_does_not_have_is_named(world: WorkcellWorld) -
     assert do(world, Act.STEAL, "spoon") == "the scene has no object 'spoon'"
 
 
+def test_what_is_done_in_buildings_only_cannot_be_done_here(world: WorkcellWorld) -> None:
+    said = "there is nothing at a table for which anybody could do 'charge'"
+    assert do(world, Act.CHARGE, None) == said
+
+
 def test_a_stolen_part_is_put_back_where_it_started(hands: Hands) -> None:
     start = hands.world.parts["bar"].pose()
     do(hands.world, Act.STEAL, "bar")
