@@ -176,7 +176,8 @@ def test_search_around_doors_is_valid_and_no_worse_than_insertion(
     problem = with_a_door(corridor(items=items, robots=two_robots()))
     first = solve(problem, "insertion", seconds=30.0, seed=seed, clock=TickingClock(0.1))
     found = solve(problem, "alns", seconds=30.0, seed=seed, clock=TickingClock(0.1))
-    assert (found.schedule is None) == (first.schedule is None)
+    # The search may find what insertion misses, never the other way round.
+    assert found.schedule is not None or first.schedule is None
     if found.schedule is not None and first.cost is not None:
         assert check(problem, found.schedule) == []
         assert cost(problem, found.schedule).total <= first.cost.total
