@@ -46,20 +46,6 @@ class Act(StrEnum):
     """Press another button in an elevator: who rides next is taken to a wrong floor first."""
 
 
-_WITHOUT_OBJECT = (
-    Act.BLOCK,
-    Act.RELEASE,
-    Act.COVER,
-    Act.UNCOVER,
-    Act.PUT_IN,
-    Act.TAKE_OUT,
-    Act.CHARGE,
-    Act.BAR,
-    Act.CLEAR,
-    Act.SEND_PERSON,
-    Act.MISDIRECT,
-)
-_OF_WAYS = (Act.BAR, Act.CLEAR)
 OF_BUILDINGS = frozenset(
     {
         Act.PUT_IN,
@@ -72,6 +58,9 @@ OF_BUILDINGS = frozenset(
     }
 )
 """What people do in buildings only."""
+
+_WITHOUT_OBJECT = {Act.BLOCK, Act.RELEASE, Act.COVER, Act.UNCOVER} | OF_BUILDINGS
+_OF_WAYS = (Act.BAR, Act.CLEAR)
 PlaceOfBuilding = Annotated[str, Field(min_length=1, max_length=130)]
 """A place of a building with its floor, as `F1/hall`."""
 
