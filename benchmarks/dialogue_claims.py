@@ -255,7 +255,7 @@ CHECKS: Sequence[tuple[str, Check]] = (
         _in_the_way,
     ),
     (r"I felt something hold up my arm", _held_up),
-    (r"(?<!until )I see my way free|My way is free|I see nothing in my way", _way_free),
+    (r"(?<!until )I see my way free|I see nothing in my way", _way_free),
     (r"I do not see my way free|I still see or feel something", _not_free),
     (r"I heard no answer", _nobody_answered),
     (r"I have now [a-z ]*?\b(once|twice|\w+ times)", _so_often),

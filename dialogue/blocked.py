@@ -1,8 +1,8 @@
 """The scripts for `blocked`: clear the way or the place, and the robot goes on.
 
 What was seen in the way is gone once it is seen gone. What was felt no camera can clear: it takes a
-person's word, a look, and a slow try. What a laser saw is in the way of a base, which has nothing
-to place.
+person's word, a look, and a slow try amid a step. What a laser saw is in the way of a base, which
+has nothing to place.
 """
 
 from dataclasses import replace
@@ -29,12 +29,12 @@ SEEN = Offer(
 FELT = Offer(
     question="I felt something hold up my arm and stopped. Can you clear its way?",
     failed="I have now been held up {times}{with_object}.",
-    yes_effect="You clear the way of my arm. I give you time for that, then I look and try slowly, "
-    "and go on if nothing holds me up ({attempt}).",
+    yes_effect="You clear the way of my arm. I give you time for that, then I look, and go on if I "
+    "see and feel nothing in it ({attempt}).",
     help=Help.CLEAR_WAY,
     request="Please clear the way of my arm. I look whether it is free.",
     resolution=Resolution.ROBOT_FINISH,
-    thanks="Thank you. My way is free.",
+    thanks="Thank you. I see my way free.",
     unchanged="I do not see what held up my arm.",
     not_seen="I still see or feel something in my way. Are you still clearing it?",
     put_right={},
