@@ -10,7 +10,9 @@ from typing import Any
 from uuid import UUID
 
 from mend.server.journal import events as ev
+from mend.server.journal import issue_index, run_index
 from mend.server.journal.chain import Chain, Row
+from mend.server.journal.issue_index import note_issue
 from mend.server.journal.run_index import note
 from mend.server.journal.sqlite import INSERT_EVENT, SqliteJournal
 from mend.server.journal.upgrades import current_version
@@ -23,6 +25,7 @@ ROBOT = f"pr2-{NUMBER}"
 PARTS = 4
 STEPS = ("above pick", "pick", "close gripper", "above pick", "above place", "place")
 STEPS += ("open gripper", "above place")
+INDEXED = {*run_index.INDEXED_TYPES, *issue_index.INDEXED_TYPES}
 JPEG = b"\xff\xd8" + bytes(4000) + b"\xff\xd9"
 
 
@@ -155,8 +158,10 @@ def write_history(path: Path, runs: int, *, pictures: bool = False, first: int =
             head += len(rows)
             connection.executemany(INSERT_EVENT, rows)
             for row in rows:
-                if row[2] in ("run_started", "run_finished", "dialogue_opened", "dialogue_closed"):
-                    note(connection, ev.any_event.validate_json(row[5]), row[5])
+                if row[2] in INDEXED:
+                    event = ev.any_event.validate_json(row[5])
+                    note(connection, event, row[5])
+                    note_issue(connection, event)
             if pictures:
                 connection.execute(
                     "INSERT INTO pictures (id, jpeg) VALUES (?, ?)", (str(picture_id(number)), JPEG)

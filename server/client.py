@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 from collections.abc import AsyncIterator, Awaitable
+from datetime import datetime
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 from urllib.parse import quote
@@ -11,6 +12,7 @@ from uuid import UUID
 import httpx
 from pydantic import TypeAdapter, ValidationError
 
+from mend.server.api.issues import IssueSummary
 from mend.server.api.principals import CodeView, DeedsPage, PrincipalView, TokenView
 from mend.server.api.problems import Problem, problem
 from mend.server.api.speech import SpeechView
@@ -178,6 +180,33 @@ class MendClient:
         return await self._get(
             "/api/runs", list[RunSummary], limit=limit, offset=offset, before=last
         )
+
+    async def issues(
+        self,
+        *,
+        text: str | None = None,
+        since: datetime | None = None,
+        until: datetime | None = None,
+        before: int | None = None,
+        limit: int = 100,
+    ) -> list[IssueSummary]:
+        """Issues of all runs, newest first; those before a `seq`, for the next page.
+
+        `text` is contained in what the issue, its part, place, robot, leaf or tree is called.
+        """
+        moments = {"since": since, "until": until}
+        return await self._get(
+            "/api/issues",
+            list[IssueSummary],
+            text=text,
+            before=before,
+            limit=limit,
+            **{name: each.isoformat() for name, each in moments.items() if each is not None},
+        )
+
+    async def run_report(self, run: UUID) -> bytes:
+        """The report of a run, so far, as HTML."""
+        return (await self._request("GET", f"/api/runs/{run}/report")).content
 
     async def run(self, run: UUID) -> RunView:
         return await self._get(f"/api/runs/{run}", RunView)

@@ -9,7 +9,17 @@ from mend.documents.spellings import CAMERA
 from mend.server.api.json_answer import json_answer
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
-from mend.server.api.services import After, Limit, Offset, RunId, WithCaller, WithServices
+from mend.server.api.services import (
+    After,
+    Limit,
+    Offset,
+    RunId,
+    SearchedText,
+    Since,
+    Until,
+    WithCaller,
+    WithServices,
+)
 from mend.server.journal.events import NO_RUN, AnyEvent
 from mend.server.journal.run_index import RunPage
 from mend.server.runtime.requests import RunRequest
@@ -66,13 +76,20 @@ async def list_runs(
     offset: Offset = 0,
     status: Statuses = None,
     before: Before = None,
+    text: SearchedText = None,
+    tree: Annotated[str | None, Query(max_length=200)] = None,
+    robot: Annotated[str | None, Query(max_length=200)] = None,
+    since: Since = None,
+    until: Until = None,
 ) -> list[RunSummary]:
-    """Runs, newest first; with `status`, those in one of these states.
+    """Runs, newest first, for which all holds that is given.
 
     For the next page give the id of the last run as `before`: runs that begin meanwhile move no
     page, as they do with `offset`. A run that cannot be read is listed as `unreadable`.
     """
-    return await services.runs.runs(RunPage(status, limit, offset, before))
+    return await services.runs.runs(
+        RunPage(status, limit, offset, before, text, tree, robot, since, until)
+    )
 
 
 @router.get(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Protocol
 from uuid import UUID
 
 from fastapi import Depends, Path, Query
-from pydantic import Field
+from pydantic import AwareDatetime, Field
 from starlette.requests import HTTPConnection
 
 from mend.documents.spellings import NAME, SEEN_CHARACTERS
@@ -112,6 +112,13 @@ DocumentName = Annotated[str, Path(pattern=NAME, examples=["eket"])]
 After = Annotated[int, Query(ge=0, le=MAX_SEQ, description="Only what comes after this `seq`.")]
 Limit = Annotated[int, Query(ge=1, le=1000, description="At most so many.")]
 Offset = Annotated[int, Query(ge=0, le=MAX_SEQ, description="Skip so many.")]
+SearchedText = Annotated[
+    str | None, Query(max_length=200, description="Contained in one of the names it goes by.")
+]
+Since = Annotated[
+    AwareDatetime | None, Query(description="Not before this moment, by the wall clock.")
+]
+Until = Annotated[AwareDatetime | None, Query(description="Before this moment, by the wall clock.")]
 HelperName = Annotated[
     str,
     Field(

@@ -8,6 +8,7 @@ from uuid import UUID
 from mend.errors import MendError
 from mend.server.journal.chain import Break, Seal
 from mend.server.journal.events import Event
+from mend.server.journal.issue_index import IssueIndex
 from mend.server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
 from mend.server.journal.run_index import RunIndex
 from mend.server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscription
@@ -135,6 +136,11 @@ class Journal(Protocol):
     @property
     def index(self) -> RunIndex:
         """What runs and dialogues there are."""
+        ...
+
+    @property
+    def issues(self) -> IssueIndex:
+        """What issues were raised."""
         ...
 
     @property

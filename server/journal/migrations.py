@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from mend.errors import MendError
-from mend.server.journal.indexing import index_events
+from mend.server.journal.indexing import index_events, index_issues
 
 VERSION_1 = """
 CREATE TABLE events (
@@ -108,6 +108,29 @@ ALTER TABLE receipts ADD COLUMN time REAL NOT NULL DEFAULT 0.0;
 """
 
 
+VERSION_6 = """
+CREATE TABLE issues (
+    seq INTEGER PRIMARY KEY,
+    run TEXT NOT NULL,
+    issue TEXT NOT NULL,
+    object TEXT,
+    place TEXT,
+    robot TEXT NOT NULL,
+    name TEXT NOT NULL,
+    node TEXT NOT NULL,
+    step INTEGER NOT NULL,
+    time REAL NOT NULL,
+    raised REAL NOT NULL,
+    picture TEXT,
+    dialogue TEXT,
+    outcome TEXT
+) STRICT;
+CREATE INDEX issues_of_run ON issues (run, seq);
+CREATE INDEX issues_of_kind ON issues (issue, seq);
+CREATE INDEX issues_of_object ON issues (object, seq);
+"""
+
+
 @dataclass(frozen=True, slots=True)
 class Migration:
     """What leads to a version: statements, then what cannot be said in SQL."""
@@ -125,6 +148,7 @@ MIGRATIONS = (
     Migration(VERSION_3, index_events),
     Migration(VERSION_4),
     Migration(VERSION_5),
+    Migration(VERSION_6, index_issues),
 )
 
 

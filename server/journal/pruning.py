@@ -18,6 +18,7 @@ from mend.server.journal.chain import (
     digest_of,
     rows_of,
 )
+from mend.server.journal.issue_index import forget_issues_of_run
 from mend.server.journal.keyed_request import forget_requests_of_run
 
 EVENTS_AT_ONCE = 500
@@ -126,6 +127,7 @@ def _let_go(connection: sqlite3.Connection, keep: Keep, now: datetime) -> list[s
         connection.execute("INSERT INTO pruning (run) VALUES (?)", (run,))
         connection.execute("DELETE FROM worlds WHERE run = ?", (run,))
         connection.execute("DELETE FROM dialogues WHERE run = ?", (run,))
+        forget_issues_of_run(connection, run)
         forget_requests_of_run(connection, run)
         _delete_receipts(connection, run, world, robots)
         connection.execute("DELETE FROM runs WHERE run = ?", (run,))

@@ -2,7 +2,7 @@
 
 import json
 import sqlite3
-from collections.abc import Awaitable, Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any, Literal
@@ -62,12 +62,21 @@ class IndexedDialogue:
 
 @dataclass(frozen=True, slots=True)
 class RunPage:
-    """Which runs are wanted, newest first: those of some statuses that began before another."""
+    """Which runs are wanted, newest first: those for which all holds that is given.
+
+    `text` is contained in what the task tree, the world, the scenario or a robot is called,
+    whether in capitals or not. `since` <= started < `until`; they began before the run `before`.
+    """
 
     statuses: Sequence[str] | None = None
     limit: int = 100
     offset: int = 0
     before: UUID | None = None
+    text: str | None = None
+    tree: str | None = None
+    robot: str | None = None
+    since: datetime | None = None
+    until: datetime | None = None
 
 
 Select = Callable[[str, Any], Awaitable[list[Any]]]
@@ -84,12 +93,9 @@ class RunIndex:
     async def page(self, page: RunPage) -> list[IndexedRun]:
         """A page of runs, newest first."""
         conditions, values = [], list[Any]()
-        if page.statuses is not None:
-            conditions.append(f"status IN ({', '.join('?' * len(page.statuses))})")
-            values += page.statuses
-        if page.before is not None:
-            conditions.append("begun < (SELECT begun FROM runs WHERE run = ?)")
-            values.append(str(page.before))
+        for condition, given in _conditions(page):
+            conditions.append(condition)
+            values += given
         where = f" WHERE {' AND '.join(conditions)}" if conditions else ""
         return await self._runs(
             f"{where} ORDER BY begun DESC LIMIT ? OFFSET ?", (*values, page.limit, page.offset)
@@ -185,6 +191,35 @@ class RunIndex:
     async def _runs(self, rest: str, values: Sequence[Any]) -> list[IndexedRun]:
         rows = await self._select(f"SELECT {COLUMNS} FROM runs{rest}", values)
         return [run for row in rows if (run := _indexed(row)) is not None]
+
+
+def _conditions(page: RunPage) -> Iterator[tuple[str, Sequence[Any]]]:
+    if page.statuses is not None:
+        yield f"status IN ({', '.join('?' * len(page.statuses))})", page.statuses
+    if page.before is not None:
+        yield "begun < (SELECT begun FROM runs WHERE run = ?)", [str(page.before)]
+    if page.text:
+        searched = "tree || char(10) || world || char(10) || coalesce(scenario, '') || robots"
+        yield contains(searched, page.text)
+    if page.tree is not None:
+        yield "tree = ?", [page.tree]
+    if page.robot is not None:
+        # Of a damaged row nobody knows which robots it has.
+        known = "iif(json_valid(robots), robots, '[]')"
+        yield f"EXISTS (SELECT 1 FROM json_each({known}) WHERE value = ?)", [page.robot]
+    if page.since is not None:
+        yield "started >= ?", [page.since.timestamp()]
+    if page.until is not None:
+        yield "started < ?", [page.until.timestamp()]
+
+
+def contains(searched: str, text: str) -> tuple[str, Sequence[Any]]:
+    """The condition that an SQL expression contains a text, and its values.
+
+    People type blanks where names have underscores, and no capitals.
+    """
+    plain, typed = (f"replace(lower({each}), '_', ' ')" for each in (searched, "?"))
+    return f"instr({plain}, {typed}) > 0", [text.strip()]
 
 
 def _indexed(row: Sequence[Any]) -> IndexedRun | None:

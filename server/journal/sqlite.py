@@ -17,6 +17,7 @@ from uuid import UUID
 
 from mend.server.journal.chain import Break, Row, Seal, Seals, at_one_moment, is_whole
 from mend.server.journal.events import Event
+from mend.server.journal.issue_index import IssueIndex, note_issue
 from mend.server.journal.journal import (
     Document,
     DuplicateReceiptError,
@@ -116,6 +117,7 @@ class SqliteJournal:
         self._next = self._batch_start = opened.head + 1
         self._chain = opened.chain
         self._index = RunIndex(self._pages.select, self._look_ups.select)
+        self._issues = IssueIndex(self._pages.select)
         self._others = opened.others
         self._subscribers = Subscribers()
         self._version = current_version()
@@ -152,6 +154,10 @@ class SqliteJournal:
     @property
     def index(self) -> RunIndex:
         return self._index
+
+    @property
+    def issues(self) -> IssueIndex:
+        return self._issues
 
     @property
     def damage(self) -> Sequence[Break]:
@@ -241,6 +247,7 @@ class SqliteJournal:
                 (event.seq, str(event.run), _type(event), event.time, self._version, record.text)
             )
             note(connection, event, record.text)
+            note_issue(connection, event)
         connection.executemany(INSERT_EVENT, rows)
         if entry.receipt is not None:
             connection.execute(

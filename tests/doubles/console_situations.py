@@ -84,6 +84,13 @@ async def runs(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def issues(service: Service, open_page: OpenPage) -> Page:
+    await service.journal.append(Entry(events=recorded_events()))
+    page = await open_page("/issues")
+    await expect(page.get_by_text("unreachable")).to_be_visible()
+    return page
+
+
 async def live_run(service: Service, open_page: OpenPage) -> Page:
     run = await ask(service)
     page = await open_page(f"/runs/{run}")
@@ -345,6 +352,7 @@ SITUATIONS: dict[str, Situation] = {
         waiting_for_help,
         no_runs,
         runs,
+        issues,
         live_run,
         run_in_building,
         taken_leaf,

@@ -62,6 +62,7 @@ ADDED_SINCE: dict[str, set[str]] = {
     "v3": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
     "v4": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
     "v5": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
+    "v6": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
 }
 """The types of events that came after a sample was written."""
 

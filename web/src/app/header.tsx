@@ -38,6 +38,9 @@ export function Header() {
         <Place href="/runs" current={view === "runs" || view === "run" || view === "start"}>
           Runs
         </Place>
+        <Place href="/issues" current={view === "issues"}>
+          Issues
+        </Place>
         <Place href="/trees" current={view === "trees" || view === "tree" || view === "edit"}>
           Task trees
         </Place>

@@ -4,6 +4,7 @@ import { computed, signal } from "@preact/signals";
 export type Route =
   | { view: "questions" }
   | { view: "runs" }
+  | { view: "issues" }
   | { view: "run"; run: string }
   | { view: "trees" }
   | { view: "tree"; tree: string }
@@ -15,6 +16,10 @@ export type Route =
   | { view: "settings" }
   | { view: "unknown"; path: string };
 
+type Page = "runs" | "issues" | "trees" | "requests" | "settings";
+
+const PAGES: ReadonlySet<Page> = new Set<Page>(["runs", "issues", "trees", "requests", "settings"]);
+
 const path = signal(location.pathname);
 
 export const route = computed(() => routeOf(path.value));
@@ -25,7 +30,7 @@ export function routeOf(address: string): Route {
   if (rest.length > 0) return { view: "unknown", path: address };
   if (second === undefined) {
     if (first === "") return { view: "questions" };
-    if (first === "runs" || first === "trees" || first === "requests" || first === "settings") return { view: first };
+    if (PAGES.has(first as Page)) return { view: first as Page };
     if (first === "fleet") return { view: first, site: null };
     if (first === "edit" || first === "start") return { view: first, tree: null };
   } else if (first === "runs") return { view: "run", run: second };

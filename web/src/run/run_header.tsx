@@ -6,6 +6,7 @@ import { plain } from "../tree/words";
 import * as rest from "../wire/rest";
 import { ended, type RunState } from "./fold";
 import type { Moment } from "./moment";
+import { RunAgain } from "./run_again";
 import { clock, sentence, siteName } from "./run_words";
 import "./run_header.css";
 
@@ -42,7 +43,13 @@ export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment
           <p class="quiet">{sentence(result.reason)}</p>
         )}
       </div>
-      {!ended(status) && <RunControls run={started.run} paused={status === "paused"} />}
+      <div class="run-ways">
+        <a class="button" href={`/api/runs/${started.run}/report`} download>
+          Report
+        </a>
+        {ended(status) && may("operator") && <RunAgain started={started} />}
+        {!ended(status) && <RunControls run={started.run} paused={status === "paused"} />}
+      </div>
     </header>
   );
 }

@@ -23,13 +23,14 @@ export interface RunsPage {
   failure: string;
 }
 
-export function useRunsPage(statuses: readonly RunStatus[], page: number): RunsPage {
+/** The runs of a page that are of some statuses, and that a query finds. */
+export function useRunsPage(statuses: readonly RunStatus[], page: number, query: string): RunsPage {
   const [found, setFound] = useState<RunsPage>({ runs: null, more: false, failure: "" });
   useEffect(() => {
     let current = true;
     const read = () => {
       // One more than is shown tells whether there are more.
-      rest.runs(PAGE_SIZE + 1, page * PAGE_SIZE, statuses).then(
+      rest.runs(PAGE_SIZE + 1, page * PAGE_SIZE, statuses, query).then(
         (runs) => {
           const shown = { runs: runs.slice(0, PAGE_SIZE), more: runs.length > PAGE_SIZE, failure: "" };
           if (current) setFound(shown);
@@ -45,6 +46,6 @@ export function useRunsPage(statuses: readonly RunStatus[], page: number): RunsP
       current = false;
       stop.forEach((each) => each());
     };
-  }, [statuses, page]);
+  }, [statuses, page, query]);
   return found;
 }

@@ -6,6 +6,9 @@ import { useNow } from "../state/use_now";
 import type { RunStatus, RunSummary } from "../wire/types";
 import { useRunsPage } from "./runs_page";
 import { ago, moment, outcome, STATUS_SIGNS, STATUS_WORDS } from "./run_words";
+import { ANYTHING, isAnything, queryOf } from "./search";
+import { SearchFields } from "./search_fields";
+import { useSettled } from "./use_settled";
 import "./runs.css";
 
 interface Filter {
@@ -26,11 +29,14 @@ const FILTERS: readonly Filter[] = [
 /** Chosen once, kept while one looks at a run and comes back. */
 const filter = signal(ALL);
 const page = signal(0);
+const search = signal(ANYTHING);
 
 export function RunsView() {
-  const { runs, more, failure } = useRunsPage(filter.value.statuses, page.value);
+  const query = useSettled(queryOf(search.value).toString());
+  const { runs, more, failure } = useRunsPage(filter.value.statuses, page.value, query);
   const now = useNow();
   const none = runs !== null && runs.length === 0;
+  const isAll = filter.value === ALL && page.value === 0 && isAnything(search.value);
   return (
     <section class="page">
       <div class="page-head">
@@ -41,12 +47,20 @@ export function RunsView() {
           </a>
         )}
       </div>
+      <SearchFields
+        search={search.value}
+        hint="Task tree, robot, world, scenario"
+        onSearch={(wanted) => {
+          search.value = wanted;
+          page.value = 0;
+        }}
+      />
       <Filters />
       <p class="mistake" role="alert">
         {failure}
       </p>
       {runs === null && failure === "" && <p class="quiet">Loading …</p>}
-      {none && (filter.value === ALL && page.value === 0 ? <NoRunsYet /> : <NoneLikeThis />)}
+      {none && (isAll ? <NoRunsYet /> : <NoneLikeThis />)}
       {runs !== null && !none && (
         <ol class="runs" aria-label="Runs, newest first">
           {runs.map((run) => (

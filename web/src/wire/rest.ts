@@ -6,6 +6,7 @@ import type {
   Event,
   FleetView,
   Intervention,
+  IssueSummary,
   Layout,
   LeafSaid,
   Problem as ProblemDocument,
@@ -103,11 +104,19 @@ export const session = () => call<SessionView>("GET", SESSION);
 export const signIn = (token: string) => call<void>("POST", SESSION, { token });
 export const signOut = () => call<void>("DELETE", SESSION);
 
-export const runs = (limit = 100, offset = 0, statuses: readonly RunStatus[] = []) =>
-  call<RunSummary[]>(
-    "GET",
-    `/api/runs?limit=${limit}&offset=${offset}${statuses.map((status) => `&status=${status}`).join("")}`,
-  );
+export const runs = (limit = 100, offset = 0, statuses: readonly RunStatus[] = [], wanted = "") => {
+  const query = new URLSearchParams(wanted);
+  query.set("limit", String(limit));
+  query.set("offset", String(offset));
+  statuses.forEach((status) => query.append("status", status));
+  return call<RunSummary[]>("GET", `/api/runs?${query}`);
+};
+export const issues = (wanted: string, before: number | null, limit: number) => {
+  const query = new URLSearchParams(wanted);
+  query.set("limit", String(limit));
+  if (before !== null) query.set("before", String(before));
+  return call<IssueSummary[]>("GET", `/api/issues?${query}`);
+};
 export const run = (id: string) => call<RunView>("GET", `/api/runs/${segment(id)}`);
 export const startRun = (request: RunRequest) => call<RunSummary>("POST", "/api/runs", request);
 export const pauseRun = (id: string) => call<RunSummary>("POST", `/api/runs/${segment(id)}/pause`);

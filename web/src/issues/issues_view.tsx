@@ -1,0 +1,108 @@
+// What robots noticed, newest first: found by its part, robot or task tree, and opened at its moment.
+import { signal } from "@preact/signals";
+import { useState } from "preact/hooks";
+import { ANYTHING, isAnything, queryOf } from "../run/search";
+import { SearchFields } from "../run/search_fields";
+import { ago, clock, moment } from "../run/run_words";
+import { useSettled } from "../run/use_settled";
+import { useNow } from "../state/use_now";
+import { plain, withoutRun } from "../tree/words";
+import type { IssueSummary } from "../wire/types";
+import { momentOf, outcomeOf } from "./issue_words";
+import { useIssuesPage } from "./issues_page";
+import "./issues.css";
+
+/** Chosen once, kept while one looks at an issue and comes back. */
+const search = signal(ANYTHING);
+/** After which issue each page begins; the newest has none. */
+const pages = signal<readonly (number | null)[]>([null]);
+
+export function IssuesView() {
+  const query = useSettled(queryOf(search.value).toString());
+  const { issues, more, failure } = useIssuesPage(query, pages.value.at(-1) ?? null);
+  const now = useNow();
+  const none = issues !== null && issues.length === 0;
+  return (
+    <section class="page">
+      <h1>Issues</h1>
+      <SearchFields
+        search={search.value}
+        hint="Part, place, robot, kind of issue, task tree"
+        onSearch={(wanted) => {
+          search.value = wanted;
+          pages.value = [null];
+        }}
+      />
+      <p class="mistake" role="alert">
+        {failure}
+      </p>
+      {issues === null && failure === "" && <p class="quiet">Loading …</p>}
+      {none && (
+        <p class="panel empty quiet">
+          {isAnything(search.value) ? "No robot has noticed anything wrong yet." : "No issue is like this."}
+        </p>
+      )}
+      {issues !== null && !none && (
+        <ol class="issues" aria-label="Issues, newest first">
+          {issues.map((issue) => (
+            <Row key={issue.seq} issue={issue} now={now} />
+          ))}
+        </ol>
+      )}
+      <Paging last={issues?.at(-1)?.seq ?? null} more={more} />
+    </section>
+  );
+}
+
+function Row({ issue, now }: { issue: IssueSummary; now: number }) {
+  const raised = Date.parse(issue.raised);
+  return (
+    <li>
+      <a class="issue" href={momentOf(issue)}>
+        <Picture picture={issue.picture} />
+        <span class="issue-what">
+          <strong>{plain(issue.issue)}</strong>
+          <span>{plain(issue.object ?? issue.name)}</span>
+        </span>
+        <span class="issue-where">
+          <span>{plain(issue.tree)}</span>
+          <span class="small quiet">
+            {withoutRun(issue.robot)} · {issue.world} · at {clock(issue.time)}
+          </span>
+        </span>
+        <span class="issue-outcome">{outcomeOf(issue)}</span>
+        <span class="issue-raised">
+          <span>{ago(raised, now)}</span>
+          <time class="small quiet" datetime={issue.raised}>
+            {moment(raised)}
+          </time>
+        </span>
+      </a>
+    </li>
+  );
+}
+
+/** What the robot saw then, if it is still kept. */
+function Picture({ picture }: { picture: string | null }) {
+  const [gone, setGone] = useState(false);
+  if (picture === null || gone) return <span class="issue-picture" />;
+  return (
+    <img class="issue-picture" src={`/api/pictures/${picture}`} alt="" loading="lazy" onError={() => setGone(true)} />
+  );
+}
+
+function Paging({ last, more }: { last: number | null; more: boolean }) {
+  const page = pages.value.length;
+  if (page === 1 && !more) return null;
+  return (
+    <nav class="paging" aria-label="Pages of issues">
+      <button class="button" type="button" disabled={page === 1} onClick={() => (pages.value = pages.value.slice(0, -1))}>
+        Newer
+      </button>
+      <span class="quiet">Page {page}</span>
+      <button class="button" type="button" disabled={!more} onClick={() => (pages.value = [...pages.value, last])}>
+        Older
+      </button>
+    </nav>
+  );
+}
