@@ -29,7 +29,7 @@ _LEAST_GREY = 1.0
 """Grey levels by which channels may differ by rounding alone."""
 _MAD_TO_SIGMA = 1.4826
 _MM = 1e3
-FROZEN = "my head camera gives an old picture, the same again as before"
+FROZEN = "my head camera is frozen: it gives again the picture that it gave before"
 """Why a picture that repeats an earlier one tells nothing of now, as a clause."""
 _OLDEST_S = 1.0
 """An older picture tells nothing of now."""
