@@ -1,4 +1,4 @@
-"""A camera that breaks: it repeats a picture with new time stamps, loses its colour or its depth."""
+"""A camera that breaks: it repeats itself, loses its colour, or its depth gets noisy."""
 
 from dataclasses import dataclass, field, replace
 
