@@ -21,6 +21,7 @@ from mend.robots.link.messages import (
     Start,
     StepStarted,
 )
+from mend.sim.random_scene import random_scene
 from mend.sim.shared_world import SharedWorld
 from mend.sim.world import WorldSetup
 from mend.tasks.plugins import load_plugins
@@ -145,3 +146,33 @@ def test_a_sound_camera_is_never_blamed_however_still_the_scene_is(robot: Broken
     assert [each.blind for each in robot.of(Looked)] == [None] * 8
     assert robot.issues == []
     assert len(robot.of(Finished)) == 1
+
+
+@pytest.mark.parametrize("seed", range(395200, 395203))
+@pytest.mark.parametrize(
+    ("world", "options"),
+    [
+        *WORLDS,
+        ("tabletop", {"light": 0.01}),
+        ("tabletop", {"camera_noise": 0.4, "light": 0.3}),
+        ("tabletop", {"camera_noise": 30.0, "light": 1.0, "depth_noise": 1.0}),
+        ("workcell", {"renderer": "bullet", "depth_noise": 0.0}),
+        ("workcell", {"camera_noise": 30.0, "light": 1.0}),
+    ],
+)
+def test_in_drawn_scenes_no_sound_camera_is_ever_blamed(
+    world: str, options: dict[str, Any], seed: int
+) -> None:
+    scene = random_scene(seed).scene
+    setup = WorldSetup(robots=["r1"], scene=scene, seed=seed, speed=None, options=options)
+    group = load_plugins("mend.worlds")[world].create_agents(setup)
+    reports: list[ReportBody] = []
+    group.agents[0].attach(lambda said, *_: reports.append(said), lambda _: None)
+    for number in range(4):
+        group.agents[0].handle(f"look {number}", Look())
+        while group.advance(1.0):
+            pass
+        for _ in range(5):
+            group.world.advance_cycle()
+    group.world.close()
+    assert [each.blind for each in reports if isinstance(each, Looked)] == [None] * 4
