@@ -81,7 +81,7 @@ _SEEN_NOW = {
     Expectation.IN_REACH: "I see the {object} within my reach now.",
     Expectation.WAY_CLEAR: "I see nothing in my way now.",
     Expectation.LED_ROUND: "Another way leads round. I take it.",
-    Expectation.VIEW_CLEAR: "I see the table now.",
+    Expectation.VIEW_CLEAR: "I see what is on the table now.",
     Expectation.LOCATED: "I know where I am now.",
     Expectation.LOADED: "I feel that my basket is heavier now.",
     Expectation.UNLOADED: "I feel that my basket is lighter now.",

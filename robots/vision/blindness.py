@@ -1,5 +1,6 @@
 """Whether a head picture can tell anything of the table at all, and if not, why."""
 
+import math
 from collections.abc import Callable
 
 import cv2
@@ -7,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mend.robots.body import CameraImage
-from mend.robots.vision.height_map import ground_rays
+from mend.robots.vision.height_map import ground_rays, measure_heights
+from mend.robots.vision.level_surfaces import find_surfaces
 from mend.robots.vision.projection import Points, is_measured
 from mend.robots.vision.scene_change import BRIGHTEST, DARKEST
 from mend.tasks.scene import Table
@@ -19,6 +21,16 @@ _LEAST_SHARE = 0.5
 _NEAREST = 0.5
 """What ends a ray before this share of its way to the table is in front of the camera."""
 _LOWEST_M = 0.1
+_SIGMAS = 4.0
+"""So far from its level a surface's pixels may be taken to be."""
+_BLOCK_PX = 32
+_SURE_SIGMAS = 6.0
+_LEAST_GREY = 1.0
+"""Grey levels by which channels may differ by rounding alone."""
+_MAD_TO_SIGMA = 1.4826
+_MM = 1e3
+FROZEN = "my head camera is frozen: it gives again the picture that it gave before"
+"""Why a picture that repeats an earlier one tells nothing of now, as a clause."""
 _OLDEST_S = 1.0
 """An older picture tells nothing of now."""
 _ALL_BUT = 0.01
@@ -31,13 +43,6 @@ def why_outdated(image: CameraImage, now_s: float) -> str | None:
     if age_s <= _OLDEST_S:
         return None
     return f"the newest picture of my head camera is {age_s:.0f} s old"
-
-
-def why_frozen(image: CameraImage, overtaken: CameraImage | None) -> str | None:
-    """Why a picture tells nothing of now that shows a scene which has changed since; or None."""
-    if overtaken is None or not np.array_equal(image.bgr, overtaken.bgr):
-        return None
-    return "my head camera still gives the picture that it gave before I moved something"
 
 
 def why_blind(
@@ -64,6 +69,73 @@ def why_blind(
     if share < _LEAST_SHARE:
         return f"my head camera sees no more than {100 * share:.0f} % of the table"
     return None
+
+
+def why_rough(image: CameraImage, table: Table, lowest_m: float) -> str | None:
+    """Why depth tells no part, none lower than `lowest_m`, from the table, as a clause; or None.
+
+    Two levels are told apart where both keep within so many of their noise's sigmas.
+    """
+    noise_m = depth_noise_m(image, table)
+    if 2 * _SIGMAS * noise_m <= lowest_m:
+        return None
+    return (
+        f"the depth that my head camera measures is off by {_MM * noise_m:.0f} mm, too much to "
+        f"tell a part of {_MM * lowest_m:.0f} mm from the table"
+    )
+
+
+def depth_noise_m(image: CameraImage, table: Table) -> float:
+    """The standard deviation of the heights that are measured towards the table; 0 without depth.
+
+    By the median of second differences along rows, in which surfaces and all but edges cancel out
+    (after Immerkaer 1996, "Fast noise variance estimation").
+    """
+    if image.depth_m is None:
+        return 0.0
+    left, middle, right = (image.depth_m[::_SPARSE, start::_SPARSE] for start in range(3))
+    columns = right.shape[1]
+    left, middle = left[:, :columns], middle[:, :columns]
+    down = ground_rays(image, every=_SPARSE)[2, :, :columns]
+    _, towards = _way_to_table(image, table, _SPARSE)
+    told = towards.reshape(len(left), -1)[:, :columns]
+    told = told & is_measured(left) & is_measured(middle) & is_measured(right)
+    second_m = np.abs((left + right - 2.0 * middle)[told] * down[told])
+    return _MAD_TO_SIGMA * float(np.median(second_m)) / math.sqrt(6.0) if len(second_m) else 0.0
+
+
+def why_colorless(
+    image: CameraImage,
+    table: Table,
+    grey: int,
+    own_arm: Callable[[Points], NDArray[np.bool_]] | None = None,
+) -> str | None:
+    """Why a picture tells no coloured parts, as a clause; None for one that has some colour.
+
+    Nor where no more stands on the table than the parts that are `grey`, so many.
+    """
+    if has_color(image):
+        return None
+    heights = measure_heights(image, table, own_arm)
+    if heights is None or len(find_surfaces(heights).all) <= grey:
+        return None
+    return "the picture of my head camera has no colour"
+
+
+def has_color(image: CameraImage) -> bool:
+    """Whether any block of a picture is coloured, by more than its noise can make it."""
+    noisy = _chroma(image.bgr[::_SPARSE])
+    sigma = _MAD_TO_SIGMA * float(np.median(np.abs(np.diff(noisy, axis=1)))) / math.sqrt(2.0)
+    scale = 1 / _BLOCK_PX
+    blocks = cv2.resize(image.bgr, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    limit = max(_SURE_SIGMAS * sigma / _BLOCK_PX, _LEAST_GREY)
+    return bool(np.abs(_chroma(np.asarray(blocks, np.uint8))).max(initial=0) > limit)
+
+
+def _chroma(bgr: NDArray[np.uint8]) -> NDArray[np.int16]:
+    """By how many grey levels blue and green differ from red."""
+    channels = bgr.astype(np.int16)
+    return channels[..., :2] - channels[..., 2:]
 
 
 def table_px(image: CameraImage, table: Table) -> NDArray[np.bool_]:

@@ -67,9 +67,15 @@ def heights(image: CameraImage) -> NDArray[np.float64]:
     return found
 
 
+def in_optical_frame(camera: Pinhole, points: Points) -> Points:
+    """Points (n, 3) of the base frame as x right, y down and z forward of the lens."""
+    optical: Points = (points - camera.pose[:3, 3]) @ camera.pose[:3, :3]
+    return optical
+
+
 def project(camera: Pinhole, points: Points) -> Points:
     """The pixels (n, 2) at which points (n, 3) of the base frame appear."""
-    optical = (points - camera.pose[:3, 3]) @ camera.pose[:3, :3]
+    optical = in_optical_frame(camera, points)
     depth = np.maximum(optical[:, 2], NEAR_M)
     pixels: Points = optical[:, :2] / depth[:, None] * camera.focal_px + np.array(camera.center_px)
     return pixels

@@ -32,8 +32,6 @@ _WELL_EXPOSED[(_WELL_EXPOSED < DARKEST) | (_WELL_EXPOSED > BRIGHTEST)] = np.nan
 _FEWEST_PX = 6
 _STILL_SHARE = 0.5
 """What is dark, or an edge, has depth in some pictures and none in others."""
-_NOISE_SHARE = 0.05
-"""What differs in less of a picture has moved by less than shows a change."""
 _LEAST_SHARE = 5e-5
 """A patch that covers less of the picture is noise, or too small for a part."""
 
@@ -94,13 +92,6 @@ def is_same(before: CameraImage, now: CameraImage) -> bool:
     if before.depth_m is None or now.depth_m is None:
         return before.depth_m is now.depth_m
     return np.array_equal(before.depth_m, now.depth_m, equal_nan=True)
-
-
-def differs_all_over(before: CameraImage, now: CameraImage) -> bool:
-    """Whether two pictures of the same differ as noise makes them, and not in some spot alone."""
-    sparse = (slice(None, None, _SPARSE), slice(None, None, _SPARSE))
-    differ = (before.bgr[sparse] != now.bgr[sparse]).any(axis=2)
-    return float(differ.mean()) > _NOISE_SHARE
 
 
 def _exposed(image: CameraImage) -> Picture:

@@ -441,11 +441,13 @@ def test_of_parts_that_nobody_can_tell_apart_any_will_do() -> None:
 
 def test_a_robot_in_the_dark_says_so_and_one_in_the_light_does_not() -> None:
     dark = replace(STARTS, dark=True)
-    said = "I cannot see the table. The picture of my head camera is black. Can you clear the view?"
+    said = "I cannot see what is on the table. The picture is black. Can you clear the view?"
     assert told(dark).say(said).wrong() == []
     assert told().say(said).wrong() == ["nothing covers the camera"]
-    assert told(dark).say("Please clear the view. I wait until I see the table.").wrong() == []
-    assert told(dark).say("I see the table now. I go on.").wrong() == ["the camera is covered"]
-    thanks = "Thank you. I see the table. I go on."
+    request = "Please clear the view. I wait until I see what is on the table."
+    assert told(dark).say(request).wrong() == []
+    now = "I see what is on the table now. I go on."
+    assert told(dark).say(now).wrong() == ["the camera is covered"]
+    thanks = "Thank you. I see what is on the table. I go on."
     assert told(dark).say(thanks).wrong() != []
     assert told(dark).now(STARTS).deed(Act.UNCOVER, None).say(thanks).wrong() == []

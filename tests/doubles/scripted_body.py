@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
+from broken_camera import with_noise
 from drawn_scene import HEAD_POSE, PARTS, TABLE_Z, DrawnScene, Resting
 
 from mend.robots.arm.body import ArmRoom, NoWay, Reach, ToolPose
@@ -43,6 +44,7 @@ class ScriptedCamera:
         self._body, self._name, self._period_s = body, name, period_s
         self.pictures_taken = 0
         self._last: CameraImage | None = None
+        self._rng = np.random.default_rng(5)
 
     @property
     def period_s(self) -> float:
@@ -57,8 +59,7 @@ class ScriptedCamera:
         if self._name == "head":
             picture = scene.picture(time=self._body.time_s())
             if self._body.head_noisy:
-                # Enough to tell two pictures of the same apart.
-                picture.bgr[:, ::8, 0] ^= np.uint8(self.pictures_taken % 4)
+                picture = with_noise(picture, 0.0003, self._rng)
             if self._last is not None and self._body.head_frozen:
                 picture = replace(self._last, time=picture.time)
             self._last = picture

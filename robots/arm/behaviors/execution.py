@@ -114,6 +114,8 @@ class ArmExecution(Execution[ArmProgress]):
         yield from self._arm.go_to_neutral()
 
     def _react(self, interruption: Interruption) -> Routine[None]:
+        if not self._arm.at_rest:
+            self._perception.head.glance()
         if isinstance(interruption, CoveredResultGone | SeenElsewhere):
             # The service has everything looked at before it lets this go on.
             yield from self.retreat(end=False)
@@ -133,7 +135,7 @@ class ArmExecution(Execution[ArmProgress]):
             return True
         self._progress.move_to(ExecutionState.CONFIRMING)
         self._arm.be_careful(1.0)
-        self._expect_change()
+        self._perception.head.glance()
         outcome = yield from look_at_outcome(part, target, self._arm, self._perception)
         self._progress.outcome = outcome
         self._progress.unconfirmed = outcome.blind is not None
@@ -147,9 +149,3 @@ class ArmExecution(Execution[ArmProgress]):
         self._watch.start_again()
         self._progress.move_to(ExecutionState.PREPARING)
         return False
-
-    def _expect_change(self) -> None:
-        """What was seen where it started, and was carried away, cannot be seen there any more."""
-        before = self._progress.seen
-        if before.image is not None and before.sighting is not None and self._progress.picked_at:
-            self._perception.head.expect_change(before.image)

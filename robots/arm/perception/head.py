@@ -14,9 +14,10 @@ from mend.robots.body import CameraImage
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location, Sighting
 from mend.robots.vision.behind_others import BehindOthers
-from mend.robots.vision.blindness import table_px, why_frozen, why_outdated
+from mend.robots.vision.blindness import FROZEN, table_px, why_outdated
 from mend.robots.vision.blob import Blob
 from mend.robots.vision.carriers import unseen_carriers
+from mend.robots.vision.freeze_detection import FreezeDetector
 from mend.robots.vision.head import HeadSighting
 from mend.robots.vision.height_map import measure_heights
 from mend.robots.vision.obstruction import Clearance, Obstruction, corridor, find_obstruction
@@ -30,7 +31,7 @@ from mend.robots.vision.presence import (
     room_of,
     top_px,
 )
-from mend.robots.vision.projection import project
+from mend.robots.vision.projection import Points, project
 from mend.robots.vision.seen_box import SeenBox
 
 HEAD = "head"
@@ -47,11 +48,27 @@ class HeadSense:
         self._clearance = Clearance()
         self._fit = Fit()
         self._boxes: Sequence[SeenBox] = ()
-        self._overtaken: CameraImage | None = None
+        self._freeze = FreezeDetector()
 
     def look(self) -> CameraImage:
         """A head picture."""
-        return self._body.cameras[HEAD].capture()
+        image = self._body.cameras[HEAD].capture()
+        self._freeze.note(image, self._fingers())
+        return image
+
+    def glance(self) -> None:
+        """Look at the arm where it is, so that a later picture without it is known to be new.
+
+        Of a camera with noise that is known without.
+        """
+        if not self._freeze.knows_noise:
+            self.look()
+
+    def _fingers(self) -> Points:
+        """Points (n, 3) of the fingers, where they are now."""
+        tool = self._body.tool_pose()
+        hulls = [np.empty((0, 3)), *self._body.finger_hulls()]
+        return np.asarray(np.concatenate(hulls) @ tool[:3, :3].T + tool[:3, 3])
 
     def want(self, part: Part | None) -> None:
         """Of equal parts the one that is handled, or asked for, is what is brought back."""
@@ -61,22 +78,14 @@ class HeadSense:
         """Understand the next head picture anew, even if nothing in it but noise has changed."""
         self._table.doubt()
 
-    def expect_change(self, since: CameraImage) -> None:
-        """What a picture showed has changed since: a camera that still gives it is frozen.
-
-        Of a camera without any noise that does not tell: all may be back where it was.
-        """
-        self._overtaken = since if self._table.camera_is_noisy else None
-
     def why_blind(self, image: CameraImage, of: tuple[Part, Location] | None = None) -> str | None:
         """Why a head picture just taken tells nothing of the table, as a clause; or None.
 
         Or of the place `of` a part that is to be there, if it is seen nowhere else.
         """
-        frozen = why_frozen(image, self._overtaken)
-        if frozen is None:
-            self._overtaken = None
-        blind = why_outdated(image, self._body.time_s()) or frozen or self._table.why_blind(image)
+        blind = why_outdated(image, self._body.time_s()) or self._table.why_blind(image)
+        if blind is None and self._freeze.frozen:
+            blind = FROZEN
         if blind is not None or of is None:
             return blind
         part, target = of

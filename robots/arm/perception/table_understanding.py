@@ -1,5 +1,6 @@
 """What is understood of head pictures, and remembered while they show nothing else."""
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 
@@ -9,12 +10,12 @@ from mend.robots.arm.perception.own_arm import OwnArm
 from mend.robots.body import CameraImage
 from mend.robots.catalogue import Catalogue, Part
 from mend.robots.link.messages import Location
-from mend.robots.vision.blindness import why_blind
+from mend.robots.vision.blindness import why_blind, why_colorless, why_rough
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.obstruction import Obstruction
 from mend.robots.vision.occupancy import Room
 from mend.robots.vision.presence import Presence, judge_presence
-from mend.robots.vision.scene_change import differs_all_over, is_same, shows_change, still_measures
+from mend.robots.vision.scene_change import is_same, shows_change, still_measures
 from mend.robots.vision.seen_box import SeenBox
 from mend.robots.vision.table_view import TableView, boxes_of, view_table
 from mend.robots.vision.tracking import LastSeen, Spot
@@ -52,8 +53,6 @@ class TableUnderstanding:
         self._seen: _Seen | None = None
         self._doubted = False
         self._wanted: str | None = None
-        self.camera_is_noisy = False
-        """Whether two pictures of the same were ever different."""
         self._last_seen = LastSeen(catalogue.starts)
         self.catalogue = catalogue
 
@@ -139,21 +138,30 @@ class TableUnderstanding:
         known = None if seen is None else seen.image if doubted else seen.latest
         if seen is not None and known is not None and seen.held == held and is_same(known, image):
             return seen
-        blind = why_blind(image, self.catalogue.table, self._own_arm.includes)
+        blind = self._why_blind(image)
         if (
             seen is None
             or seen.held != held
             or seen.blind is not None
             or blind is not None
             or shows_change(seen.image, image)
+            or doubted
+            or not _still_measures_all(seen, image)
         ):
             self._seen = seen = _Seen(image, image, held, blind)
-        else:
-            self.camera_is_noisy = self.camera_is_noisy or differs_all_over(seen.latest, image)
-            if doubted or not _still_measures_all(seen, image):
-                self._seen = seen = _Seen(image, image, held, blind)
         seen.latest = image
         return seen
+
+    def _why_blind(self, image: CameraImage) -> str | None:
+        table, parts = self.catalogue.table, self.catalogue.parts
+        blind = why_blind(image, table, self._own_arm.includes)
+        if blind is not None:
+            return blind
+        lowest_m = min((part.size[2] for part in parts.values()), default=math.inf)
+        hued = sum(self._model.has_hue(name) for name in parts if name in self._model.names)
+        return why_rough(image, table, lowest_m) or (
+            why_colorless(image, table, len(parts) - hued, self._own_arm.includes) if hued else None
+        )
 
     def _view(self, image: CameraImage, stranger: Part | None) -> TableView | None:
         parts = {

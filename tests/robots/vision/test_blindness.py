@@ -4,10 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from broken_camera import with_noise, without_color
 from drawn_scene import DrawnScene, Resting
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from mend.robots.body import CameraImage
-from mend.robots.vision.blindness import why_blind, why_frozen, why_outdated
+from mend.robots.vision.blindness import (
+    depth_noise_m,
+    why_blind,
+    why_colorless,
+    why_outdated,
+    why_rough,
+)
 from mend.tasks.scene import Table
 
 TABLE = Table()
@@ -62,9 +71,42 @@ def test_a_picture_of_long_ago_tells_nothing_of_now() -> None:
     assert why_outdated(image, 22.0) == "the newest picture of my head camera is 12 s old"
 
 
-def test_a_picture_of_what_has_changed_since_tells_nothing_however_fresh_it_claims_to_be() -> None:
-    before = FULL.picture(time=10.0)
-    again = replace(before, time=20.0)
-    assert why_frozen(again, None) is None
-    assert why_frozen(again, before) is not None
-    assert why_frozen(replace(FULL, light=0.9).picture(), before) is None
+@given(seed=st.integers(0, 2**32 - 1), noise_m=st.floats(1e-4, 0.3))
+@settings(max_examples=30, deadline=None)
+def test_the_noise_of_depth_is_measured_whatever_stands_there(seed: int, noise_m: float) -> None:
+    noisy = with_noise(FULL.picture(), noise_m, np.random.default_rng(seed))
+    clear = depth_noise_m(FULL.picture(), TABLE)
+    # Of heights, which lie aslant to the depth that is noisy.
+    assert 0.4 * noise_m - clear < depth_noise_m(noisy, TABLE) < 1.05 * noise_m + clear
+
+
+def test_a_part_that_is_lower_than_the_noise_can_tell_is_blamed_on_the_camera() -> None:
+    noisy = with_noise(FULL.picture(), 0.03, np.random.default_rng(1))
+    why = why_rough(noisy, TABLE, 0.030)
+    assert why is not None
+    assert why.startswith("the depth that my head camera measures is off by ")
+    assert why.endswith("too much to tell a part of 30 mm from the table")
+    assert why_rough(FULL.picture(), TABLE, 0.008) is None
+    assert why_rough(without_depth(FULL.picture(), 1.0, np.nan), TABLE, 0.008) is None
+
+
+@pytest.mark.parametrize("noise", [0.0, 4.0, 30.0])
+@pytest.mark.parametrize("light", [0.3, 1.0])
+def test_a_picture_without_any_colour_is_told_from_a_coloured_one(
+    noise: float, light: float
+) -> None:
+    picture = replace(FULL, noise=0.0, light=light).picture()
+    assert why_colorless(noisy_colors(picture, noise), TABLE, grey=0) is None
+    grey = noisy_colors(without_color(picture), noise)
+    assert why_colorless(grey, TABLE, grey=0) == "the picture of my head camera has no colour"
+
+
+def test_where_no_more_than_grey_parts_stand_a_grey_picture_is_as_it_should_be() -> None:
+    assert why_colorless(without_color(DrawnScene().picture()), TABLE, grey=0) is None
+    two = without_color(FULL.picture())
+    assert why_colorless(two, TABLE, grey=len(FULL.parts) + 1) is None
+
+
+def noisy_colors(image: CameraImage, noise: float) -> CameraImage:
+    off = np.random.default_rng(2).normal(0.0, noise, image.bgr.shape) if noise else 0.0
+    return replace(image, bgr=np.clip(np.rint(image.bgr + off), 0, 255).astype(np.uint8))

@@ -166,7 +166,7 @@ async def test_a_run_does_not_end_with_a_table_that_is_not_seen() -> None:
     [issue] = [each for each in events if isinstance(each, ev.IssueRaised)]
     assert (issue.issue, issue.object) == ("blind", "part_2")
     [prompt] = [each for each in events if isinstance(each, ev.Prompt) and each.kind == "ask"]
-    assert prompt.text.startswith("I cannot see the table.")
+    assert prompt.text.startswith("I cannot see what is on the table.")
     assert isinstance(events[-1], ev.RunFinished)
     assert events[-1].unseen == []
 

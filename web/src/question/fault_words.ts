@@ -10,7 +10,7 @@ const SENTENCES: Readonly<Record<string, (part: string) => string>> = {
   positioning: (part) => `The ${part} needs a second hand while the robot places it.`,
   missing: (part) => `The robot looked for the ${part} and cannot see it anywhere.`,
   undone: (part) => `The ${part} is not at its place.`,
-  blind: () => "The robot's head camera does not see the table.",
+  blind: () => "The robot's head camera does not see what is on the table.",
   lost: () => "The robot does not know where it is.",
   blocked: () => "Something is in the way of the robot's arm.",
   item_not_given: () => "The robot waits for something to be put into its basket.",
