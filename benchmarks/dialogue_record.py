@@ -86,6 +86,14 @@ class RunRecord:
         leaf = self._leaves.get(node)
         return None if leaf is None or leaf.place is None else leaf.object
 
+    def spoken_names(self, node: str) -> set[str]:
+        """What a robot may call what a leaf does, where its object or its place tells it apart."""
+        leaf = self._leaves.get(node)
+        if leaf is None or leaf.object is None:
+            return set()
+        names = {leaf.object, f"{leaf.object} for the {leaf.place}"}
+        return {each.replace("_", " ") for each in names}
+
     def since_opened(self, index: int, event: ev.DialogueEvent) -> Sequence[ev.Event]:
         """The events of a dialogue, and all beside them, so far."""
         return self.events[self._opened[event.dialogue] : index]
