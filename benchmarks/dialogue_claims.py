@@ -31,6 +31,13 @@ def _at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str])
     return None if off_m <= AT_PLACE_M else f"it is {off_m:.3f} m off"
 
 
+def _there_already(
+    record: RunRecord, index: int, event: ev.Prompt, said: re.Match[str]
+) -> str | None:
+    off_m = record.offset_of_alternative(index, said[1], said[2])
+    return None if off_m <= AT_PLACE_M else f"it is {off_m:.3f} m off"
+
+
 def _not_at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
     off_m = max(record.offset(index, event.node, event.object))
     moment = record.moment(index)
@@ -250,6 +257,7 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"Thank you", _thanks),
     (r"I see the .* at its place", _at_place),
     (r"I do not see the .* at its place yet|[Tt]he .* is not at its place", _not_at_place),
+    (r"The (.*) is at the (.*) already, which does as well", _there_already),
     (r"I see the (?!table)(?!.* at its place)", _somewhere),
     (r"I cannot see the table", _dark_at_issue),
     (r"I do not see the table yet", _dark),

@@ -12,9 +12,10 @@ from mend.dialogue.spoken import MOST_NAMES, bound_for
 from mend.server.journal import events as ev
 from mend.server.runtime.choosing import able_mask
 from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.in_place import in_place_mask
+from mend.server.runtime.parting import Parting
 from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run_state import RunState
-from mend.tasks.definition import NodeKind
 from mend.tasks.task_tree import TaskTree
 
 _Deed = tuple[str, str | None]
@@ -157,10 +158,13 @@ def _before_the_next_try(
     """
     leaves = tree.eligible_leaves()
     able = leaves[able_mask(state, proxy, leaves)]
+    in_place = able[in_place_mask(state, tree, proxy.seen, able)]
     others = able[able != leaf]
     attempts, mine = tree.attempts_of(others), tree.attempts(leaf)
-    parting = _Parting(tree, leaf, others)
+    parting = Parting(tree, leaf, others)
     rivals = parting.at_or
+    if (done := np.isin(others, in_place) & rivals).any() and leaf not in in_place:
+        return Sequel(Next.INSTEAD, _names(tree, leaf, others[done]))
     first = ~rivals & (attempts < mine)
     sooner = rivals & (attempts < mine)
     if sooner.any():
@@ -176,40 +180,6 @@ def _before_the_next_try(
         return Sequel(Next.OTHERS_FIRST, _names(tree, leaf, others[first]))
     as_near = others[failed & (attempts == mine)]
     return Sequel(Next.ANY_OF, _names(tree, leaf, as_near)) if as_near.size else Sequel()
-
-
-class _Parting:
-    """Where the ways from the root to other leaves and to a certain one part.
-
-    `height`: how many nodes above that leaf; `at_or`: whether at an OR, so that the leaves lie
-    under different alternatives. Two others that part from it at different heights part from each
-    other at the upper one.
-    """
-
-    def __init__(self, tree: TaskTree, leaf: int, others: NDArray[np.int64]) -> None:
-        self.height = np.zeros(others.size, dtype=np.int64)
-        self.at_or = np.zeros(others.size, dtype=np.bool_)
-        way = [leaf, *_above(tree, leaf)]
-        begins = others.searchsorted(way)
-        ends = others.searchsorted([tree.end_of(node) for node in way])
-        # Where no other leaf is added to those under a node, none parts from it there.
-        for height in (np.flatnonzero((np.diff(begins) != 0) | (np.diff(ends) != 0)) + 1).tolist():
-            for part in (
-                slice(begins[height], begins[height - 1]),
-                slice(ends[height - 1], ends[height]),
-            ):
-                self.height[part] = height
-                self.at_or[part] = tree.kind_of(way[height]) is NodeKind.OR
-
-
-def _above(tree: TaskTree, node: int) -> list[int]:
-    """The nodes on the way from a node's parent to the root."""
-    found: list[int] = []
-    above = tree.parent_of(node)
-    while above is not None:
-        found.append(above)
-        above = tree.parent_of(above)
-    return found
 
 
 def _names(tree: TaskTree, leaf: int, leaves: NDArray[np.int64]) -> tuple[str, ...]:

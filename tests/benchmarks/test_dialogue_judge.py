@@ -370,6 +370,13 @@ def test_what_goes_first_may_be_named_by_its_place_but_only_once() -> None:
     assert twice.start("/1", "part_2").start().wrong() == ["one of them is named twice"]
 
 
+def test_what_does_as_well_has_to_be_where_it_is_said_to_be() -> None:
+    text = "The part 1 is at the spot 1 already, which does as well."
+    assert replace(told(), world=PLACED).say(text).wrong() == []
+    assert told().say(text).wrong() != []
+    assert replace(told(), world=PLACED).say(text.replace("spot 1", "spot 2")).wrong() != []
+
+
 def replace_events(run: Told) -> Told:
     return Told(run.world, run.time_s, list(run.events), list(run.moments))
 
