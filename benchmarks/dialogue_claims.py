@@ -31,9 +31,7 @@ def _at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str])
     return None if off_m <= AT_PLACE_M else f"it is {off_m:.3f} m off"
 
 
-def _there_already(
-    record: RunRecord, index: int, _: ev.Prompt, said: re.Match[str]
-) -> str | None:
+def _there_already(record: RunRecord, index: int, _: ev.Prompt, said: re.Match[str]) -> str | None:
     off_m = record.offset_of_alternative(index, said[1], said[2])
     return None if off_m <= AT_PLACE_M else f"it is {off_m:.3f} m off"
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location
@@ -65,7 +66,11 @@ class Fit:
 
 def find_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
     """What is in `room` that is not its part."""
-    return _seen_occupant(view, room, fit) or _hidden_occupant(view, room, fit)
+    return (
+        _seen_occupant(view, room, fit)
+        or _hidden_occupant(view, room, fit)
+        or _recalled_occupant(view, room, fit)
+    )
 
 
 def _seen_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
@@ -108,6 +113,28 @@ def _hidden_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | Non
         return None
     found = obstruction_at(carrier, view.heights.image)
     return replace(found, part=None, what=f"{carrier.name} {room.meaning}")
+
+
+def _recalled_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
+    """What was seen where the room's part is to go, and was not seen to leave since it is hidden.
+
+    What lies on a part would hide that as well.
+    """
+    if room.over_part:
+        return None
+    volume = _volume(room, fit)
+    inner = shapely.Polygon(volume.corners())
+    for box in view.recalled:
+        as_high = box.bottom_z < volume.top_z and box.top_z > room.bottom_z + fit.tolerance_m
+        if (
+            box.name != room.part.name
+            and as_high
+            and inner.intersects(shapely.Polygon(box.corners()))
+        ):
+            found = obstruction_at(box, view.heights.image)
+            what = f"{box.name} {room.meaning}, as I saw before something hid it"
+            return replace(found, part=None, what=what)
+    return None
 
 
 def _is_lower(box: SeenBox, room: Room, fit: Fit) -> bool:
