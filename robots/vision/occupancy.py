@@ -18,6 +18,9 @@ from mend.robots.vision.table_view import TableView
 _COVERED_SHARE = 0.7
 """Something covers a part of whose top less than this is seen."""
 
+_HALF = 0.5
+"""Something small is in a room if so much of it is."""
+
 
 @dataclass(frozen=True, slots=True)
 class Room:
@@ -69,7 +72,7 @@ def find_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
     return (
         _seen_occupant(view, room, fit)
         or _hidden_occupant(view, room, fit)
-        or _recalled_occupant(view, room, fit)
+        or _known_occupant(view, room, fit)
     )
 
 
@@ -115,25 +118,26 @@ def _hidden_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | Non
     return replace(found, part=None, what=f"{carrier.name} {room.meaning}")
 
 
-def _recalled_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
-    """What was seen where the room's part is to go, and was not seen to leave since it is hidden.
+def _known_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
+    """A part in the room of which the picture shows too little, or now nothing.
 
-    What lies on a part would hide that as well.
+    What was seen there and was not seen to leave, since something hides it, is there. What lies on
+    a part would hide that as well.
     """
     if room.over_part:
         return None
     volume = _volume(room, fit)
     inner = shapely.Polygon(volume.corners())
-    for box in view.recalled:
+    for box in view.known:
+        outline = shapely.Polygon(box.corners())
+        much_m2 = min(fit.share * inner.area, _HALF * outline.area)
         as_high = box.bottom_z < volume.top_z and box.top_z > room.bottom_z + fit.tolerance_m
-        if (
-            box.name != room.part.name
-            and as_high
-            and inner.intersects(shapely.Polygon(box.corners()))
-        ):
+        if box.name == room.part.name or not as_high:
+            continue
+        if inner.intersection(outline).area >= much_m2 > 0.0:
             found = obstruction_at(box, view.heights.image)
-            what = f"{box.name} {room.meaning}, as I saw before something hid it"
-            return replace(found, part=None, what=what)
+            hidden = ", as I saw before something hid it" if box in view.recalled else ""
+            return replace(found, part=None, what=f"{box.name} {room.meaning}{hidden}")
     return None
 
 

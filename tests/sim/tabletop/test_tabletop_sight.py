@@ -374,3 +374,13 @@ def test_what_was_seen_in_the_way_still_is_while_something_hides_it() -> None:
     assert where_the_top_belongs(watcher) is None
     watcher.do(Act.MOVE, "wall", to=Pose(x=0.44, y=0.0))
     assert where_the_top_belongs(watcher) is None
+
+
+def test_a_thin_part_of_which_little_is_seen_is_in_the_way() -> None:
+    low = CAKE.objects["wall"].model_copy(update={"size": (0.08, 0.2, 0.2)})
+    watcher = Watcher(CAKE.model_copy(update={"objects": {**CAKE.objects, "wall": low}}))
+    watcher.do(Act.MOVE, "candle", to=Pose(x=0.55, y=0.0, z=CAKE.table.height + 0.04))
+    watcher.seen()
+    watcher.do(Act.MOVE, "wall", to=Pose(x=0.45, y=0.0))
+    assert "candle" in watcher.seen()
+    assert where_the_top_belongs(watcher) == "candle is where top belongs"
