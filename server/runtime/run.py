@@ -298,6 +298,8 @@ class Run:
                 proxy.doing = RobotActivity.WORKING
             case Held(command=command) if command == proxy.command:
                 proxy.doing = RobotActivity.IDLE
+            case Rejected(for_good=True, reason=reason) if not proxy.gone_for_good:
+                await self._presence.give_up(proxy, f"is of no more use: {reason}")
             case Rejected(command=command) if command == proxy.command:
                 proxy.doing = RobotActivity.IDLE
             case Looked():
