@@ -110,17 +110,15 @@ class TableUnderstanding:
         return known[where]
 
     def hidden_at(self, part: Part, view: TableView) -> Location | None:
-        """Where a part was last seen whole, if something hides that now."""
-        at = self._last_seen.seen_whole(part.name)
-        return at if at is not None and self._hides(part, at, view) else None
-
-    def _hides(self, part: Part, at: Location, view: TableView) -> bool:
-        """Whether something keeps the camera from telling if a part still stands where it did."""
+        """Where a part was last seen, be it in part, if something hides that now."""
+        at = self._last_seen.seen_standing(part.name)
+        if at is None:
+            return None
         equals, bottom_z = self.equals_of(part), self.catalogue.height_of(at)
         presence = judge_presence(view, part, equals, at, bottom_z)
         if presence is Presence.GONE:
             self._last_seen.note_gone(part.name)
-        return presence is Presence.HIDDEN
+        return at if presence is Presence.HIDDEN else None
 
     def equals_of(self, part: Part) -> set[str]:
         """The names of all parts that look the same, its own among them."""
@@ -179,11 +177,11 @@ class TableUnderstanding:
         return replace(view, recalled=self._recalled(parts.values(), view))
 
     def _recalled(self, parts: Iterable[Part], view: TableView) -> list[SeenBox]:
-        """What is not seen, but hidden where it was last seen, be it in part."""
+        """What is not seen, but hidden where it was last seen."""
         found = []
         for part in parts:
-            at = self._last_seen.seen_standing(part.name)
-            if at is not None and part.name not in view.sightings and self._hides(part, at, view):
+            at = None if part.name in view.sightings else self.hidden_at(part, view)
+            if at is not None:
                 found += boxes_of(part, at, self.catalogue.height_of(at), complete=False)
         return found
 

@@ -365,6 +365,10 @@ def test_what_was_seen_in_the_way_still_is_while_something_hides_it() -> None:
     assert where_the_top_belongs(watcher) == "candle is where top belongs"
     watcher.do(Act.MOVE, "wall", to=Pose(x=0.44, y=0.0))
     assert "candle" not in watcher.seen()
+    head, candle = watcher.perception.head, watcher.catalogue.parts["candle"]
+    recalled = head.recall(candle, head.look())
+    assert recalled is not None, "it is hidden, and nobody can say that it is missing"
+    assert near((recalled.x, recalled.y), (0.55, 0.0))
     assert where_the_top_belongs(watcher) == (
         "candle is where top belongs, as I saw before something hid it"
     )
