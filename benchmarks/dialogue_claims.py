@@ -31,6 +31,11 @@ def _at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str])
     return None if off_m <= AT_PLACE_M else f"it is {off_m:.3f} m off"
 
 
+def _there_already(record: RunRecord, index: int, _: ev.Prompt, said: re.Match[str]) -> str | None:
+    off_m = record.offset_of_alternative(index, said[1], said[2])
+    return None if off_m <= AT_PLACE_M else f"it is {off_m:.3f} m off"
+
+
 def _not_at_place(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
     off_m = max(record.offset(index, event.node, event.object))
     moment = record.moment(index)
@@ -177,7 +182,7 @@ def _next_try(record: RunRecord, index: int, event: ev.Prompt, said: re.Match[st
     ended = isinstance(later[-1], ev.RunFailed) and later[-1].node != event.node
     dropped = any(isinstance(each, ev.NodeAbandoned) for each in later)
     instead = re.search(r"or I take (.*?) instead", event.text)
-    replaced = instead is not None and any(_is_begun(each, instead[1]) for each in later)
+    replaced = instead is not None and any(_is_begun(record, each, instead[1]) for each in later)
     # Where what an alternative had done is seen gone another one may be nearer.
     undone = any(
         isinstance(each, ev.NodeUndone) and record.are_alternatives_above(event.node, each.node)
@@ -187,12 +192,21 @@ def _next_try(record: RunRecord, index: int, event: ev.Prompt, said: re.Match[st
     return None if kept else "it was never tried again"
 
 
-def _is_begun(event: ev.Event, names: str) -> bool:
+def _is_begun(record: RunRecord, event: ev.Event, names: str) -> bool:
     """Whether one of the parts of a sentence is begun with; of "another part" any will do."""
     if not isinstance(event, ev.NodeStarted):
         return False
-    named = re.findall(r"the ([\w ]+?)(?=,| or |$)", names)
-    return "another part" in names or event.name.replace("_", " ") in named
+    begun = {event.name.replace("_", " "), *record.spoken_names(event.node)}
+    return "another part" in names or not begun.isdisjoint(_named(names))
+
+
+def _named(names: str) -> list[str]:
+    return re.findall(r"the (\w[\w ]*?)(?=,| or |$)", names)
+
+
+def _named_once(_: RunRecord, __: int, ___: ev.Prompt, said: re.Match[str]) -> str | None:
+    named = _named(said[1])
+    return None if len(named) == len(set(named)) else "one of them is named twice"
 
 
 def _then_with(record: RunRecord, index: int, event: ev.Prompt, said: re.Match[str]) -> str | None:
@@ -202,7 +216,7 @@ def _then_with(record: RunRecord, index: int, event: ev.Prompt, said: re.Match[s
     for each in record.following(index):
         if isinstance(each, ev.NodeStarted) and each.node == event.node:
             return "it was tried again before that"
-        if _is_begun(each, said[1]):
+        if _is_begun(record, each, said[1]):
             return None
     return None
 
@@ -235,6 +249,8 @@ def _left_out(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str])
     return None if told else "it was not left out"
 
 
+_NEXT = r"I (?:go on with|take) (.*?) (?:first|instead)"
+
 CHECKS: Sequence[tuple[str, Check]] = (
     (r"Thank you", _thanks),
     (r"I see the .* at its place", _at_place),
@@ -243,6 +259,7 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"I cannot see what is on the table", _dark_at_issue),
     (r"I do not see what is on the table yet", _dark),
     (r"(?<!until )I see what is on the table", _light),
+    (r"The (.*) is at the (.*) already, which does as well", _there_already),
     (r"What I was handed does not look like", _handed_another),
     (r"I do not see the .* where I can reach it yet", _not_in_reach),
     (r"has toppled over", _toppled),
@@ -260,7 +277,8 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"I heard no answer", _nobody_answered),
     (r"I have now [a-z ]*?\b(once|twice|\w+ times)", _so_often),
     (r"try again \(attempt (\d+) of \d+\)", _next_try),
-    (r"I (?:go on with|take) (.*?) (?:first|instead)", _then_with),
+    (_NEXT, _then_with),
+    (_NEXT, _named_once),
     (r"[Tt]he task ends here", _ends),
     (r"(?<!before )I go on\.", _goes_on),
     (r"I leave the .* out", _left_out),
@@ -270,5 +288,6 @@ CHECKS: Sequence[tuple[str, Check]] = (
 EFFECTS: Sequence[tuple[str, Check]] = (
     (r"(?<!again )\((?:still )?attempt (\d+) of \d+\)", _attempt_now),
     (r"again \(still attempt (\d+) of \d+\)", _attempt_now),
+    (_NEXT, _named_once),
 )
 """The same for what an answer, or none, is said to lead to."""

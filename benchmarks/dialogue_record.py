@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from untruths import Rest, equals_of, kinds_of, leaves_of
 
+from mend.dialogue.spoken import spoken
 from mend.robots.body import Matrix4
 from mend.robots.vision.line_of_sight import sight_of
 from mend.robots.vision.seen_box import SeenBox
@@ -86,6 +87,13 @@ class RunRecord:
         leaf = self._leaves.get(node)
         return None if leaf is None or leaf.place is None else leaf.object
 
+    def spoken_names(self, node: str) -> set[str]:
+        """What a robot may call what a leaf does, where its object or its place tells it apart."""
+        leaf = self._leaves.get(node)
+        if leaf is None or leaf.object is None:
+            return set()
+        return {spoken(leaf.object), spoken(f"{leaf.object} for the {leaf.place}")}
+
     def since_opened(self, index: int, event: ev.DialogueEvent) -> Sequence[ev.Event]:
         """The events of a dialogue, and all beside them, so far."""
         return self.events[self._opened[event.dialogue] : index]
@@ -93,8 +101,20 @@ class RunRecord:
     def offset(self, index: int, node: str, name: str | None) -> tuple[float, float]:
         """How far a part is from its place (in the plane, in height), infinite if it is gone."""
         place = self._place(node)
-        if place is None:
-            return math.inf, math.inf
+        return (math.inf, math.inf) if place is None else self._offset_from(index, place, name)
+
+    def offset_of_alternative(self, index: int, name: str, place: str) -> float:
+        """How far a part is from a place, both as robots say them; infinite if no leaf has both."""
+        offsets = [
+            max(self._offset_from(index, each.place, each.object))
+            for each in self._leaves.values()
+            if each.place is not None
+            and each.object is not None
+            and (spoken(each.object), spoken(each.place)) == (name, place)
+        ]
+        return min(offsets, default=math.inf)
+
+    def _offset_from(self, index: int, place: str, name: str | None) -> tuple[float, float]:
         pose = self._scene.places[place].pose
         height_m = self._scene.table.height if pose.z is None else pose.z
         offsets = [

@@ -25,7 +25,10 @@ class Next(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Sequel:
-    """What comes next; `names` are the parts (or leaves) that go first or are taken instead."""
+    """What comes next; `names` are the parts (or leaves) that go first or are taken instead.
+
+    Each is named once; what a part's name alone does not tell apart has its place with it.
+    """
 
     next: Next = Next.TRY_AGAIN
     names: tuple[str, ...] = ()

@@ -22,11 +22,20 @@ def count_of(times: int) -> str:
     return f"{_COUNTS[times] if times < len(_COUNTS) else times} times"
 
 
+MOST_NAMES = 4
+"""Of several things so many are of use: one more than are named."""
+
+
+def bound_for(name: str, place: str) -> str:
+    """A part by where it is to go, where several leaves handle it: `cup for the tray`."""
+    return f"{name} for the {place}"
+
+
 def choice_of(names: tuple[str, ...]) -> str:
     """Some of several things: `the cup`, `the cup or the saucer`, `the cup, the saucer, ...`."""
-    said = [f"the {spoken(name)}" for name in names[:3]]
+    said = [f"the {spoken(name)}" for name in names[: MOST_NAMES - 1]]
     if not said:
         return "something else"
-    if len(names) > 3:
+    if len(names) >= MOST_NAMES:
         return f"{', '.join(said)} or another part"
     return " or ".join([", ".join(said[:-1]), said[-1]] if said[:-1] else said)

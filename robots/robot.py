@@ -1,5 +1,6 @@
 """One robot: takes commands, drives executions and looks, and reports, over any body."""
 
+import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +14,7 @@ from mend.robots.execution.execution_state import ExecutionState
 from mend.robots.execution.monitor import BEFORE_FIRST_STEP
 from mend.robots.execution.routine import Routine
 from mend.robots.execution.subsystem import Subsystem
+from mend.robots.execution.watch import MonitorFailedError
 from mend.robots.link.messages import (
     IDENTITY,
     PROTOCOL_VERSION,
@@ -43,6 +45,8 @@ from mend.robots.link.messages import (
 )
 from mend.robots.task_progress import TaskProgress
 from mend.robots.vision.drawing import encode_jpeg
+
+log = logging.getLogger(__name__)
 
 _SEEN_AT_ONCE = (IssueDetected, Finished, Looked, Rejected)
 """Reports that the service must see before more time passes."""
@@ -88,6 +92,10 @@ class Robot:
         self._owed_clip: _OwedClip | None = None
         self._reported = False
         self._shut_down = False
+        self._told = ""
+        """The command by which it began or went on last."""
+        self._unfit: str | None = None
+        """Why it does nothing any more."""
 
     # --- What it is ---------------------------------------------------------------------------
 
@@ -225,6 +233,11 @@ class Robot:
             if self._activity is activity:
                 self._activity, self._looking = None, False
             self._take_waiting()
+        except MonitorFailedError as error:
+            log.exception("robot %s does nothing any more", self._name)
+            self._activity, self._unfit = None, str(error)
+            self._acting.effector.stop()
+            self._reject(self._told, self._unfit)
 
     def _take_waiting(self) -> None:
         waiting, self._waiting = self._waiting, []
@@ -238,9 +251,17 @@ class Robot:
         try:
             self._take(command_id, body)
         except CommandError as error:
-            self._report(Rejected(command=command_id, reason=str(error)))
+            self._reject(command_id, str(error))
+
+    def _reject(self, command_id: str, reason: str) -> None:
+        unfit = self._unfit is not None
+        self._report(Rejected(command=command_id, reason=reason, for_good=unfit))
 
     def _take(self, command_id: str, body: CommandBody) -> None:
+        if isinstance(body, Start | Resume):
+            if self._unfit is not None:
+                raise CommandError(self._unfit)
+            self._told = command_id
         if isinstance(body, Start | Resume | Look) and self._coming_to_rest:
             self._waiting.append((command_id, body))
             return

@@ -13,6 +13,7 @@ from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
 from mend.tasks.intervention import OF_BUILDINGS, Act
 from mend.tasks.library import SCENARIOS
 from mend.tasks.scenario import Scenario, Trigger
+from mend.tasks.scenario_heights import heights_out_of_place
 from mend.tasks.scene import Scene
 
 
@@ -92,6 +93,8 @@ def find_misfits(
     `step_counts` says by the name of a behavior how many steps it has, None where that depends.
     """
     misfits = [] if scene is None else _missing_in_scene(scenario, scene)
+    for pose, why in [] if scene is None else heights_out_of_place(scenario, scene):
+        misfits.append(Misfit(pose, f"{_spoken(pose)} {why}"))
     for index, each in enumerate(scenario.interventions):
         if each.do.act is Act.PLACE and each.do.place is None:
             where = ("interventions", index, "do")

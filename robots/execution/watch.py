@@ -26,6 +26,16 @@ class Interruption(Exception):  # noqa: N818 - control flow, not an error
         self.reaction = reaction
 
 
+class MonitorFailedError(Exception):
+    """A monitor of somebody's has raised an error: what it watches for would go unnoticed."""
+
+    def __init__(self, issue: str, error: Exception) -> None:
+        super().__init__(
+            f"its monitor for '{issue}' failed ({type(error).__name__}: {error}), and without one "
+            "of its monitors it does nothing"
+        )
+
+
 class Watch(ABC, Generic[V, G]):
     """Lets the monitors of the step under way judge what is sensed."""
 
@@ -54,11 +64,14 @@ class Watch(ABC, Generic[V, G]):
         return [each for each in self._monitors if each.watches(self._behavior, phase)]
 
     def show(self, view: V) -> None:
-        """Let the monitors of this step judge. Raises `Interruption` for the first that must."""
+        """Let the monitors of this step judge. Raises `Interruption` for the first that must.
+
+        Raises `MonitorFailedError` where one of them cannot.
+        """
         for monitor in self.watching(self._progress.phase):
             if monitor.issue in self._raised or not self._may_judge(monitor, view):
                 continue
-            detection = monitor.check(view)
+            detection = _checked(monitor, view)
             if detection is None or self._copes_with(monitor, detection):
                 continue
             if monitor.interrupts:
@@ -101,3 +114,10 @@ class Watch(ABC, Generic[V, G]):
                 jpeg=jpeg,
             )
         )
+
+
+def _checked(monitor: AnyMonitor, view: MonitorView) -> Detection | None:
+    try:
+        return monitor.check(view)
+    except Exception as error:
+        raise MonitorFailedError(monitor.issue, error) from error

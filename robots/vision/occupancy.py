@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location
@@ -16,6 +17,9 @@ from mend.robots.vision.table_view import TableView
 
 _COVERED_SHARE = 0.7
 """Something covers a part of whose top less than this is seen."""
+
+_HALF = 0.5
+"""Something small is in a room if so much of it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +69,11 @@ class Fit:
 
 def find_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
     """What is in `room` that is not its part."""
-    return _seen_occupant(view, room, fit) or _hidden_occupant(view, room, fit)
+    return (
+        _seen_occupant(view, room, fit)
+        or _hidden_occupant(view, room, fit)
+        or _known_occupant(view, room, fit)
+    )
 
 
 def _seen_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
@@ -108,6 +116,29 @@ def _hidden_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | Non
         return None
     found = obstruction_at(carrier, view.heights.image)
     return replace(found, part=None, what=f"{carrier.name} {room.meaning}")
+
+
+def _known_occupant(view: TableView, room: Room, fit: Fit) -> Obstruction | None:
+    """A part in the room of which the picture shows too little, or now nothing.
+
+    What was seen there and was not seen to leave, since something hides it, is there. What lies on
+    a part would hide that as well.
+    """
+    if room.over_part:
+        return None
+    volume = _volume(room, fit)
+    inner = shapely.Polygon(volume.corners())
+    for box in view.known:
+        outline = shapely.Polygon(box.corners())
+        much_m2 = min(fit.share * inner.area, _HALF * outline.area)
+        as_high = box.bottom_z < volume.top_z and box.top_z > room.bottom_z + fit.tolerance_m
+        if box.name == room.part.name or not as_high:
+            continue
+        if inner.intersection(outline).area >= much_m2 > 0.0:
+            found = obstruction_at(box, view.heights.image)
+            hidden = ", as I saw before something hid it" if box in view.recalled else ""
+            return replace(found, part=None, what=f"{box.name} {room.meaning}{hidden}")
+    return None
 
 
 def _is_lower(box: SeenBox, room: Room, fit: Fit) -> bool:

@@ -25,6 +25,7 @@ class LastSeen:
         """`starts`: where the parts are said to start."""
         self._spots = dict(starts or {})
         self._whole: dict[str, Location] = {}
+        self._stood: dict[str, Location] = {}
 
     @property
     def spots(self) -> Mapping[str, Spot]:
@@ -43,19 +44,29 @@ class LastSeen:
         """How a part stood when it was last seen whole, unless it was moved since."""
         return self._whole.get(name)
 
+    def seen_standing(self, name: str) -> Location | None:
+        """How a part stood when it was last seen, whole or not, unless it was moved since."""
+        return self._stood.get(name)
+
     def note_sighting(self, name: str, seen: HeadSighting) -> None:
         """A part was seen."""
         self.note(name, (seen.x, seen.y, seen.z))
-        if seen.complete and not seen.toppled:
-            self._whole[name] = Location(x=seen.x, y=seen.y, z=seen.z, yaw=seen.yaw)
+        if seen.toppled:
+            self._stood.pop(name, None)
+            return
+        self._stood[name] = Location(x=seen.x, y=seen.y, z=seen.z, yaw=seen.yaw)
+        if seen.complete:
+            self._whole[name] = self._stood[name]
 
     def note_gone(self, name: str) -> None:
         """A part was seen not to be where it stood any more."""
         self._whole.pop(name, None)
+        self._stood.pop(name, None)
 
     def note(self, name: str, at: Spot) -> None:
         """A part was at a place, or was let go there."""
         self._spots[name] = at
-        stood = self._whole.get(name)
-        if stood is not None and math.hypot(stood.x - at[0], stood.y - at[1]) > _MOVED_M:
-            del self._whole[name]
+        for known in (self._whole, self._stood):
+            stood = known.get(name)
+            if stood is not None and math.hypot(stood.x - at[0], stood.y - at[1]) > _MOVED_M:
+                del known[name]

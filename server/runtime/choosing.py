@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mend.server.journal.events import Candidate
+from mend.server.runtime.in_place import in_place_mask
 from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.team import Team
@@ -68,15 +69,19 @@ def choose(state: RunState, proxy: RobotProxy) -> Choice | None:
     leaves = state.tree.eligible_leaves()
     able = able_mask(state, proxy, leaves)
     able &= _with_company_mask(state, proxy, leaves, able)
+    in_place = in_place_mask(state, state.tree, proxy.seen, leaves)
+    wanted = able & in_place if (able & in_place).any() else able
     if proxy.team is not None and proxy.team.has_company:
-        able &= _free_mask(state, proxy, proxy.team, leaves, able)
-    if not able.any():
+        free = _free_mask(state, proxy, proxy.team, leaves, able)
+        able, wanted = able & free, wanted & free
+    if not wanted.any():
         return None
     potentials = potentials_for(state, proxy, leaves)
-    leaf = state.tree.choose(leaves, potentials, able)
+    leaf = state.tree.choose(leaves, potentials, wanted)
     if leaf is None:
         return None
-    return Choice(leaf, _candidates(state, leaves[able], potentials[able]))
+    candidates = _candidates(state, leaves[able], potentials[able], in_place[able])
+    return Choice(leaf, candidates)
 
 
 def _with_company_mask(
@@ -113,12 +118,15 @@ def _free_mask(
 
 
 def _candidates(
-    state: RunState, leaves: NDArray[np.int64], potentials: NDArray[np.float64]
+    state: RunState,
+    leaves: NDArray[np.int64],
+    potentials: NDArray[np.float64],
+    in_place: NDArray[np.bool_],
 ) -> list[Candidate]:
     tree = state.tree
     attempts = tree.attempts_of(leaves)
     # Sorting keeps the tree's order, in which the leaves come, where all else is equal.
-    order = np.lexsort((-potentials, attempts))[:MAX_RECORDED_CANDIDATES]
+    order = np.lexsort((-potentials, attempts, ~in_place))[:MAX_RECORDED_CANDIDATES]
     return [
         Candidate(
             node=tree.path_of(leaf),
@@ -126,11 +134,13 @@ def _candidates(
             level=tree.level(leaf),
             potential=potential,
             attempts=failed,
+            in_place=there,
         )
-        for leaf, potential, failed in zip(
+        for leaf, potential, failed, there in zip(
             leaves[order].tolist(),
             potentials[order].tolist(),
             attempts[order].tolist(),
+            in_place[order].tolist(),
             strict=True,
         )
     ]

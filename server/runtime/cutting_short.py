@@ -24,12 +24,16 @@ class CuttingShort:
         self._dialogues = dialogues
         self._reports = reports
 
-    def put_back(self, leaves: Iterable[int], reason: str) -> list[ev.Event]:
-        """The events that put active leaves back, and abort the dialogues about them."""
+    def put_back(self, leaves: Iterable[int], reason: str, *, said: bool = False) -> list[ev.Event]:
+        """The events that put active leaves back, and abort the dialogues about them.
+
+        `said`: who was asked something hears the reason.
+        """
         state = self._context.state
         events: list[ev.Event] = []
         for leaf in leaves:
             if dialogue := state.dialogue_of(leaf):
+                events += [self._dialogues.remark(dialogue, reason)] if said else []
                 events.append(self._dialogues.abort(dialogue))
             robot = None if leaf in state.people else state.tree.owner(leaf)
             events.append(self._reports.reset(leaf, robot, reason, failed=False))

@@ -5,7 +5,9 @@ from typing import Literal
 from uuid import UUID, uuid4
 
 from mend.dialogue.outlook import Outlook
-from mend.dialogue.script import Ask, Felt, Help, Turn
+from mend.dialogue.script import Ask, Felt, Help, Remark, Turn
+from mend.dialogue.spoken import spoken
+from mend.dialogue.wording import sentence
 from mend.errors import ConflictError, NotFoundError
 from mend.server.dialogues.answers import AnswerSource
 from mend.server.dialogues.escalation import (
@@ -217,6 +219,10 @@ class DialogueDriver:
     def abort(self, dialogue: DialogueState) -> ev.DialogueClosed:
         """The event that ends a dialogue because its run, robot or alternative ends."""
         return self._make(dialogue).aborted()
+
+    def remark(self, dialogue: DialogueState, clause: str) -> ev.Prompt:
+        """The event that tells whoever was asked why nobody has to answer any more."""
+        return self._make(dialogue).say(Remark(sentence(spoken(clause))))
 
     # --- Silence and answers ------------------------------------------------------------------
 

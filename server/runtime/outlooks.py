@@ -8,13 +8,18 @@ from numpy.typing import NDArray
 from mend.dialogue.evidence import has_moved
 from mend.dialogue.outlook import Next, Outlook, Sequel
 from mend.dialogue.script import Expectation
+from mend.dialogue.spoken import MOST_NAMES, bound_for
 from mend.server.journal import events as ev
 from mend.server.runtime.choosing import able_mask
 from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.in_place import in_place_mask
+from mend.server.runtime.parting import Parting
 from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run_state import RunState
-from mend.tasks.definition import NodeKind
 from mend.tasks.task_tree import TaskTree
+
+_Deed = tuple[str, str | None]
+"""What a leaf handles, or its own name, and the place that it fills."""
 
 
 def outlook_at(
@@ -141,7 +146,7 @@ def _after_giving_up(tree: TaskTree, leaf: int) -> Sequel:
     assert goal is not None, "an alternative has an OR above it"
     leaves = tree.eligible_leaves()
     begin, end = leaves.searchsorted((goal, tree.end_of(goal)))
-    return Sequel(Next.INSTEAD, _names(tree, leaves[begin:end]))
+    return Sequel(Next.INSTEAD, _names(tree, leaf, leaves[begin:end]))
 
 
 def _before_the_next_try(
@@ -153,59 +158,46 @@ def _before_the_next_try(
     """
     leaves = tree.eligible_leaves()
     able = leaves[able_mask(state, proxy, leaves)]
+    in_place = able[in_place_mask(state, tree, proxy.seen, able)]
     others = able[able != leaf]
     attempts, mine = tree.attempts_of(others), tree.attempts(leaf)
-    parting = _Parting(tree, leaf, others)
+    parting = Parting(tree, leaf, others)
     rivals = parting.at_or
+    if (done := np.isin(others, in_place) & rivals).any() and leaf not in in_place:
+        return Sequel(Next.INSTEAD, _names(tree, leaf, others[done]))
     first = ~rivals & (attempts < mine)
     sooner = rivals & (attempts < mine)
     if sooner.any():
         # What else belongs to this alternative may be nearer, and decide for it.
         open_still = first.any() and parting.height[first].min() < parting.height[sooner].max()
-        return Sequel(Next.EITHER if open_still else Next.INSTEAD, _names(tree, others[sooner]))
+        return Sequel(
+            Next.EITHER if open_still else Next.INSTEAD, _names(tree, leaf, others[sooner])
+        )
     as_soon = rivals & (attempts == mine)
     if as_soon.any():
-        return Sequel(Next.EITHER, _names(tree, others[as_soon]))
+        return Sequel(Next.EITHER, _names(tree, leaf, others[as_soon]))
     if first.any():
-        return Sequel(Next.OTHERS_FIRST, _names(tree, others[first]))
+        return Sequel(Next.OTHERS_FIRST, _names(tree, leaf, others[first]))
     as_near = others[failed & (attempts == mine)]
-    return Sequel(Next.ANY_OF, _names(tree, as_near)) if as_near.size else Sequel()
+    return Sequel(Next.ANY_OF, _names(tree, leaf, as_near)) if as_near.size else Sequel()
 
 
-class _Parting:
-    """Where the ways from the root to other leaves and to a certain one part.
-
-    `height`: how many nodes above that leaf; `at_or`: whether at an OR, so that the leaves lie
-    under different alternatives. Two others that part from it at different heights part from each
-    other at the upper one.
-    """
-
-    def __init__(self, tree: TaskTree, leaf: int, others: NDArray[np.int64]) -> None:
-        self.height = np.zeros(others.size, dtype=np.int64)
-        self.at_or = np.zeros(others.size, dtype=np.bool_)
-        way = [leaf, *_above(tree, leaf)]
-        begins = others.searchsorted(way)
-        ends = others.searchsorted([tree.end_of(node) for node in way])
-        # Where no other leaf is added to those under a node, none parts from it there.
-        for height in (np.flatnonzero((np.diff(begins) != 0) | (np.diff(ends) != 0)) + 1).tolist():
-            for part in (
-                slice(begins[height], begins[height - 1]),
-                slice(ends[height - 1], ends[height]),
-            ):
-                self.height[part] = height
-                self.at_or[part] = tree.kind_of(way[height]) is NodeKind.OR
+def _names(tree: TaskTree, leaf: int, leaves: NDArray[np.int64]) -> tuple[str, ...]:
+    """What leaves do, each thing once; by its place where that tells it from another one's."""
+    deeds: dict[_Deed, None] = {}
+    for each in leaves.tolist():
+        deeds[_deed_of(tree, each)] = None
+        if len(deeds) == MOST_NAMES:
+            break
+    handled = [what for what, _ in {*deeds, _deed_of(tree, leaf)}]
+    return tuple(
+        bound_for(what, place) if place is not None and handled.count(what) > 1 else what
+        for what, place in deeds
+    )
 
 
-def _above(tree: TaskTree, node: int) -> list[int]:
-    """The nodes on the way from a node's parent to the root."""
-    found: list[int] = []
-    above = tree.parent_of(node)
-    while above is not None:
-        found.append(above)
-        above = tree.parent_of(above)
-    return found
-
-
-def _names(tree: TaskTree, leaves: NDArray[np.int64]) -> tuple[str, ...]:
-    first = leaves[:4].tolist()
-    return tuple(tree.leaf_definition(each).object or tree.name_of(each) for each in first)
+def _deed_of(tree: TaskTree, leaf: int) -> _Deed:
+    handled = tree.nodes.text(leaf, "object")
+    if handled is None:
+        return tree.name_of(leaf), None
+    return handled, tree.nodes.text(leaf, "place")

@@ -222,6 +222,7 @@ class ReportEvents:
             log.warning("robot %s rejected a command: %s", proxy.robot, plain(body.reason))
         if (
             execution is None
+            or body.for_good
             or proxy.doing is not RobotActivity.WORKING
             or body.command != proxy.command
         ):

@@ -34,6 +34,7 @@ from mend.server.runtime.context import RunContext
 from mend.server.runtime.cutting_short import CuttingShort
 from mend.server.runtime.dialogue_driver import DialogueDriver
 from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.done_already import DoneAlready
 from mend.server.runtime.failure import fail_run, why_it_stopped
 from mend.server.runtime.giving_up import GivingUp
 from mend.server.runtime.hardware import Hardware
@@ -83,6 +84,7 @@ class Run:
         self._inbox = Inbox()
         cutting_short = CuttingShort(context, proxies, dialogues, self._reports)
         self._results = Results(context, self._reports, cutting_short)
+        self._done_already = DoneAlready(context.state, cutting_short)
         self._allocation = TaskAllocation(
             context, proxies, self._team, self._people, self._reports, self._results
         )
@@ -296,6 +298,8 @@ class Run:
                 proxy.doing = RobotActivity.WORKING
             case Held(command=command) if command == proxy.command:
                 proxy.doing = RobotActivity.IDLE
+            case Rejected(for_good=True, reason=reason) if not proxy.gone_for_good:
+                await self._presence.give_up(proxy, f"is of no more use: {reason}")
             case Rejected(command=command) if command == proxy.command:
                 proxy.doing = RobotActivity.IDLE
             case Looked():
@@ -304,6 +308,7 @@ class Run:
                     await self._results.judged(proxy, body)
                     await self._people.judged(proxy, body)
                 if purpose is not None:
+                    await self._done_already.judged(proxy)
                     await self._looked(proxy, purpose, bool(body.fulfilled))
             case Intervened():
                 proxy.looked_at = None

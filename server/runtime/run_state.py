@@ -57,6 +57,12 @@ class RunState:
         self.scene = Scene.model_validate(started.scene, strict=False)
         at = {name: each.pose for name, each in self.scene.places.items()}
         self.places = {name: (each.x, each.y, each.z or 0.0) for name, each in at.items()}
+        table_z = self.scene.table.height
+        self.spots = {
+            name: (each.x, each.y, table_z if each.z is None else each.z)
+            for name, each in at.items()
+        }
+        """Where what stands at a place has its bottom."""
         self.tree = TaskTree(nodes or TaskTreeDefinition.model_validate(started.tree))
         self.tree.running = True
         self.status = RunStatus.RUNNING

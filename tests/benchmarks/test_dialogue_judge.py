@@ -361,6 +361,22 @@ def test_what_was_said_to_go_first_has_to() -> None:
     assert replace_events(run).start().wrong() == ["it was tried again before that"]
 
 
+def test_what_goes_first_may_be_named_by_its_place_but_only_once() -> None:
+    first = "the part 2 for the spot 2"
+    text = f"All right. I go on with {first} first, then I try again (attempt 2 of 3)."
+    run = told().say(text).close().reset(failed=True)
+    assert replace_events(run).start("/1", "part_2").start().wrong() == []
+    twice = told().say(text.replace(first, "the part 2 or the part 2")).close().reset(failed=True)
+    assert twice.start("/1", "part_2").start().wrong() == ["one of them is named twice"]
+
+
+def test_what_does_as_well_has_to_be_where_it_is_said_to_be() -> None:
+    text = "The part 1 is at the spot 1 already, which does as well."
+    assert replace(told(), world=PLACED).say(text).wrong() == []
+    assert told().say(text).wrong() != []
+    assert replace(told(), world=PLACED).say(text.replace("spot 1", "spot 2")).wrong() != []
+
+
 def replace_events(run: Told) -> Told:
     return Told(run.world, run.time_s, list(run.events), list(run.moments))
 

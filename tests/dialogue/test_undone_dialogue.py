@@ -94,6 +94,25 @@ def test_a_helper_may_have_it_left_out() -> None:
     assert (close.reason, close.resolution) == (CloseReason.LEFT_OUT, None)
 
 
+@pytest.mark.parametrize("sensed", [Sensed.SEEN, Sensed.NOWHERE])
+@pytest.mark.parametrize(
+    ("times", "resolution"), [(1, Resolution.ROBOT_FINISH), (2, Resolution.ROBOT_RETRY)]
+)
+def test_where_nothing_has_changed_it_goes_on_once_and_then_the_attempt_has_failed(
+    times: int, resolution: Resolution, sensed: Sensed
+) -> None:
+    conversation = about(outlook=Outlook(times=times, unchanged=times), sensed=sensed)
+    conversation.open()
+    conversation.answer("yes")
+    remark, close = conversation.help_seen(Change.NONE)
+    assert isinstance(remark, Remark)
+    assert isinstance(close, Close)
+    goes_on = resolution is Resolution.ROBOT_FINISH
+    assert remark.text.endswith("I go on." if goes_on else "I try again (attempt 2 of 3).")
+    assert "Thank you" not in remark.text
+    assert (close.resolution, close.helped, close.failed) == (resolution, False, not goes_on)
+
+
 @pytest.mark.parametrize("outlook", [Outlook(), LAST_CHANCE])
 def test_where_the_robot_goes_on_by_itself_it_only_says_so(outlook: Outlook) -> None:
     conversation = about(interrupts=False, outlook=outlook)

@@ -137,6 +137,39 @@ def test_an_act_of_buildings_is_told_where_the_scene_is_none(setting: dict[str, 
     assert (sentence in told) is (setting == {})
 
 
+@pytest.mark.parametrize(
+    ("z", "why"),
+    [
+        (None, None),
+        (0.7, None),
+        (0.8, None),
+        (
+            3.0,
+            "where nothing could hold it: the table is 0.7 m high, and all other parts on one "
+            "another reach 0.80 m",
+        ),
+        (0.2, "inside the table, which is 0.7 m high"),
+    ],
+)
+def test_a_height_at_which_nothing_could_stand_is_told_with_its_line(
+    z: float | None, why: str | None
+) -> None:
+    at = "{x: 0.5, y: 0.0}" if z is None else f"{{x: 0.5, y: 0.0, z: {z}}}"
+    text = GOOD.replace("{act: steal, object: pink_bar}", f"{{act: move, object: cup, to: {at}}}")
+    read = read_scenario_text(text.replace("tree: eket\n", f"tree: eket\nscene:\n  cup: {at}\n"))
+    cup = SceneObject(color=(1.0, 0.0, 0.0), size=(0.1, 0.1, 0.1), pose=Pose(x=0.5, y=0.0))
+    scene = Scene(name="tea", objects={"cup": cup, "pink_bar": cup}, places={})
+    found = find_misfits(read.scenario, TREE, scene, {"pick_and_place": 8})
+    assert [read.problem(each).describe("mine.yaml") for each in found] == (
+        []
+        if why is None
+        else [
+            f"mine.yaml:{line}: {where} puts 'cup' at a height of {z:g} m, {why}"
+            for line, where in ((4, "scene.cup.z"), (7, "interventions[0].do.to.z"))
+        ]
+    )
+
+
 def test_names_that_the_scene_has_not_are_told() -> None:
     cup = SceneObject(color=(1.0, 0.0, 0.0), size=(0.1, 0.1, 0.1), pose=Pose(x=0.5, y=0.0))
     scene = Scene(name="tea", objects={"cup": cup}, places={"tray": Place(pose=cup.pose)})

@@ -3,7 +3,7 @@ import { whyChosen } from "../src/run/choice";
 import type { Candidate, NodeStarted } from "../src/wire/types";
 
 function candidate(name: string, potential: number, attempts = 0): Candidate {
-  return { node: `/${name}`, name, level: 1, potential, attempts };
+  return { node: `/${name}`, name, level: 1, potential, attempts, in_place: false };
 }
 
 function choice(...candidates: [Candidate, ...Candidate[]]): NodeStarted {
@@ -28,6 +28,11 @@ describe("the reason of a choice", () => {
 
   it("is fewer failed attempts, whatever the potentials", () => {
     expect(whyChosen(choice(candidate("a", 0.1), candidate("b", 2, 1)))).toBe("a had the fewest failed attempts (0).");
+  });
+
+  it("is that its part stands at its place already, whatever else differs", () => {
+    const there = { ...candidate("tea", 0.1, 2), in_place: true };
+    expect(whyChosen(choice(there, candidate("a", 1)))).toBe("What tea handles stands at its place already.");
   });
 
   it("is the place in the tree where nothing else differs", () => {

@@ -27,7 +27,7 @@ def find_object(work: Work) -> Routine[None]:
     """Look for the object, again if it, or the table, is not wholly seen.
 
     What robots hide that pass is waited for. What something hides for longer is taken to be where
-    it was last seen whole: the fingers will tell.
+    it was last seen: the fingers will tell.
     """
     part, perception, findings = work.assignment.part, work.perception, work.progress.seen
     behind = BehindOthers()

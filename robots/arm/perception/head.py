@@ -118,7 +118,7 @@ class HeadSense:
         return None if sighting is None else replace(sighting, time=image.time)
 
     def recall(self, part: Part, image: CameraImage) -> HeadSighting | None:
-        """Where a part was when last seen whole, if something keeps the camera from seeing that."""
+        """Where a part was when last seen, if something keeps the camera from seeing that."""
         view = self._table.view(image)
         stood = None if view is None else self._table.hidden_at(part, view)
         if stood is None:

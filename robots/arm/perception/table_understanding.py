@@ -109,8 +109,8 @@ class TableUnderstanding:
         return known[where]
 
     def hidden_at(self, part: Part, view: TableView) -> Location | None:
-        """Where a part was last seen whole, if something hides that now."""
-        at = self._last_seen.seen_whole(part.name)
+        """Where a part was last seen, be it in part, if something hides that now."""
+        at = self._last_seen.seen_standing(part.name)
         if at is None:
             return None
         equals, bottom_z = self.equals_of(part), self.catalogue.height_of(at)
@@ -185,7 +185,7 @@ class TableUnderstanding:
         return replace(view, recalled=self._recalled(parts.values(), view))
 
     def _recalled(self, parts: Iterable[Part], view: TableView) -> list[SeenBox]:
-        """What is not seen, but hidden where it was last seen whole."""
+        """What is not seen, but hidden where it was last seen."""
         found = []
         for part in parts:
             at = None if part.name in view.sightings else self.hidden_at(part, view)

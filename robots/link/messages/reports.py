@@ -150,11 +150,12 @@ class Intervened(Message):
 
 
 class Rejected(Message):
-    """The robot cannot carry out a command."""
+    """The robot cannot carry out a command; `for_good`: nor any other, from now on."""
 
     type: Literal["rejected"] = "rejected"
     command: Word
     reason: Sentence
+    for_good: bool = False
 
 
 ReportBody = Annotated[

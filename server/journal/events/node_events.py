@@ -9,13 +9,18 @@ from mend.server.journal.events.event import Author, EventModel, NodeEvent
 
 
 class Candidate(EventModel):
-    """One leaf that could have been started, and why it was or was not."""
+    """One leaf that could have been started, and why it was or was not.
+
+    `in_place`: another alternative would do as well, but what this one handles is at its place
+    already.
+    """
 
     node: str
     name: str
     level: float
     potential: float
     attempts: int
+    in_place: bool = False
 
 
 class NodeStarted(NodeEvent):

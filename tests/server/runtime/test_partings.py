@@ -7,7 +7,7 @@ from full_evaluation import Node, define, trees
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mend.server.runtime.outlooks import _Parting
+from mend.server.runtime.parting import Parting
 from mend.tasks.definition import NodeKind
 from mend.tasks.task_tree import TaskTree
 
@@ -38,7 +38,7 @@ def test_partings_are_those_of_each_pair(root: Node, data: st.DataObject) -> Non
     leaf = data.draw(st.sampled_from(list(tree.leaves)))
     rest = [each for each in tree.leaves if each != leaf]
     others = sorted(data.draw(st.sets(st.sampled_from(rest)))) if rest else []
-    parting = _Parting(tree, leaf, np.array(others, dtype=np.int64))
+    parting = Parting(tree, leaf, np.array(others, dtype=np.int64))
     assert parting.at_or.tolist() == [_exclude(tree, each, leaf) for each in others]
     # Whether a leaf that excludes this one excludes another one that does not.
     rivals = [i for i, each in enumerate(parting.at_or) if each]

@@ -337,3 +337,54 @@ def test_what_is_seen_beside_a_load_is_no_equal_that_stood_elsewhere(
     watcher.do(Act.MOVE, "load", to=Pose(x=x, y=y, yaw=yaw + turn))
     watcher.do(Act.STEAL, "stolen")
     assert watcher.presence("stolen", 0.6, 0.1, yaw=stolen_yaw) is Presence.GONE
+
+
+CAKE = scene_of(
+    {
+        "cake": at(0.55, 0.0, size=(0.10, 0.10, 0.04), color=(0.85, 0.65, 0.4)),
+        "top": at(0.48, -0.4, size=(0.06, 0.07, 0.03), color=(0.15, 0.3, 0.85)),
+        "candle": at(0.6, -0.3, size=(0.015, 0.015, 0.06), color=(0.85, 0.1, 0.1)),
+        "wall": at(0.45, 0.25, size=(0.03, 0.2, 0.3), color=(0.1, 0.7, 0.2)),
+    }
+)
+
+
+def where_the_top_belongs(watcher: Watcher) -> str | None:
+    """What is seen, or was seen before it was hidden, on the cake."""
+    head, top = watcher.perception.head, watcher.catalogue.parts["top"]
+    image, on_cake = head.look(), Location(x=0.55, y=0.0, z=CAKE.table.height + 0.04)
+    found = head.occupant(image, top, head.sight(top, image), on_cake)
+    return None if found is None else found.what
+
+
+def test_what_was_seen_in_the_way_still_is_while_something_hides_it() -> None:
+    watcher = Watcher(CAKE)
+    watcher.seen()
+    assert where_the_top_belongs(watcher) is None
+    watcher.do(Act.MOVE, "candle", to=Pose(x=0.55, y=0.0, z=CAKE.table.height + 0.04))
+    assert where_the_top_belongs(watcher) == "candle is where top belongs"
+    watcher.do(Act.MOVE, "wall", to=Pose(x=0.44, y=0.0))
+    assert "candle" not in watcher.seen()
+    head, candle = watcher.perception.head, watcher.catalogue.parts["candle"]
+    recalled = head.recall(candle, head.look())
+    assert recalled is not None, "it is hidden, and nobody can say that it is missing"
+    assert near((recalled.x, recalled.y), (0.55, 0.0))
+    assert where_the_top_belongs(watcher) == (
+        "candle is where top belongs, as I saw before something hid it"
+    )
+    watcher.do(Act.STEAL, "candle")
+    assert where_the_top_belongs(watcher) is not None
+    watcher.do(Act.MOVE, "wall", to=Pose(x=0.45, y=0.25))
+    assert where_the_top_belongs(watcher) is None
+    watcher.do(Act.MOVE, "wall", to=Pose(x=0.44, y=0.0))
+    assert where_the_top_belongs(watcher) is None
+
+
+def test_a_thin_part_of_which_little_is_seen_is_in_the_way() -> None:
+    low = CAKE.objects["wall"].model_copy(update={"size": (0.08, 0.2, 0.2)})
+    watcher = Watcher(CAKE.model_copy(update={"objects": {**CAKE.objects, "wall": low}}))
+    watcher.do(Act.MOVE, "candle", to=Pose(x=0.55, y=0.0, z=CAKE.table.height + 0.04))
+    watcher.seen()
+    watcher.do(Act.MOVE, "wall", to=Pose(x=0.45, y=0.0))
+    assert "candle" in watcher.seen()
+    assert where_the_top_belongs(watcher) == "candle is where top belongs"

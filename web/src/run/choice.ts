@@ -9,6 +9,7 @@ export function whyChosen(event: NodeStarted): string {
   const name = plain(event.name);
   if (chosen === undefined) return `${name} was started again where it was.`;
   if (others.length === 0) return `${name} was the only one that could be started.`;
+  if (chosen.in_place) return `What ${name} handles stands at its place already.`;
   const fewer = others.filter((other) => other.attempts > chosen.attempts);
   const alike = others.filter((other) => other.attempts === chosen.attempts);
   if (alike.length === 0) return `${name} had the fewest failed attempts (${chosen.attempts}).`;
