@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 from mend.robots.arm.behaviors.behavior import Situation, Step
@@ -20,6 +20,7 @@ from mend.robots.arm.behaviors.planning import (
     plan_amid,
 )
 from mend.robots.arm.clearance import ROOM_M
+from mend.robots.arm.feasibility.scattering import Options, Surroundings, options_of, turns_of
 from mend.robots.arm.feasibility.standing import Standing, beneath
 from mend.robots.link.messages import Location
 from mend.robots.vision.seen_box import SeenBox
@@ -43,6 +44,7 @@ class Hindrance:
     start: Standing
     place: Standing | None
     around: Sequence[Standing]
+    drawn: Sequence[Standing]
     errand: Errand
     barred: Barred
 
@@ -56,12 +58,23 @@ class Hindrance:
 
 
 @dataclass(frozen=True, slots=True)
+class _Case:
+    """An errand amid what stands there then; `exact` is the same with the part seen where it is."""
+
+    errand: Errand
+    drawn: Sequence[Standing]
+    spare: Spare = AS_SEEN
+    exact: Errand | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class ArmCheck:
     """The arm of the robot that is to do it."""
 
     planner: Planner
     scatter: Scatter
     table: Table
+    _known: dict[tuple[object, ...], Options] = field(default_factory=dict, compare=False)
 
     def hindrance(
         self, start: Standing, place: Standing | None, around: Sequence[Standing]
@@ -70,14 +83,22 @@ class ArmCheck:
 
         Without a place it is only to be lifted.
         """
-        boxes = _boxes(around)
-        bottom_z = _rest_z(start, around)
-        for at, spare in self._seen_at(start.pose):
-            errand = _errand(start, at, bottom_z, place, around)
-            found = at_once(plan_amid(errand, self.planner, self.table, boxes, spare))
-            if isinstance(found, Barred):
-                return Hindrance(start, place, around, errand, found)
+        for case in self._cases(start, place, around):
+            found = self._tried(case)
+            if found is None:
+                continue
+            if isinstance(found.reason, Crowding) and case.exact is not None:
+                # The fingers have room by what is so: that is only seen otherwise now and then.
+                case = replace(case, errand=case.exact, exact=None)
+                found = self._tried(case)
+            if found is not None:
+                return Hindrance(start, place, around, case.drawn, case.errand, found)
         return None
+
+    def _tried(self, case: "_Case") -> Barred | None:
+        boxes = _boxes(case.drawn)
+        found = at_once(plan_amid(case.errand, self.planner, self.table, boxes, case.spare))
+        return found if isinstance(found, Barred) else None
 
     def told(self, hindrance: Hindrance, moved: set[str]) -> SceneProblem:
         """The hindrance in a sentence; `moved` are the parts that leaves take away."""
@@ -124,27 +145,49 @@ class ArmCheck:
             f"({start.x:.3f}, {start.y:.3f})",
         )
 
-    @property
-    def _spare(self) -> Spare:
-        """More room than a robot needs by what it sees, as that is never exact."""
-        return Spare(ROOM_M, self.scatter.xy)
+    def _cases(
+        self, start: Standing, place: Standing | None, around: Sequence[Standing]
+    ) -> Iterator["_Case"]:
+        """Where a start may be seen, what stands around it then, and what room the fingers need.
 
-    def _seen_at(self, pose: Pose) -> Iterator[tuple[Pose, Spare]]:
-        """Where a start may be seen, and what room the fingers need there.
-
-        Where it is, with room to spare; and at the corners of what it is scattered over, or nearer
-        and farther away.
+        Where it is, with room to spare; and nearer and farther away, or at the corners of what it
+        is scattered over, amid what is scattered as well.
         """
-        yield pose, self._spare
-        shift_m = self.scatter.xy
-        if shift_m == 0.0:
-            away_m = max(math.hypot(pose.x, pose.y), _SEEN_M)
-            shifts = [(pose.x * far, pose.y * far) for far in (-_SEEN_M / away_m, _SEEN_M / away_m)]
-        else:
-            off_m = shift_m + _SEEN_M
-            shifts = [(dx * off_m, dy * off_m) for dx, dy in product(_SIDES, _SIDES)]
-        for dx, dy in shifts:
-            yield pose.model_copy(update={"x": pose.x + dx, "y": pose.y + dy}), AS_SEEN
+        bottom_z = _rest_z(start, around)
+
+        def errand_at(pose: Pose, dx: float, dy: float) -> Errand:
+            seen = pose.model_copy(update={"x": pose.x + dx, "y": pose.y + dy})
+            return _errand(start, seen, bottom_z, place, around)
+
+        pose, scatter = start.pose, self.scatter
+        yield _Case(errand_at(pose, 0.0, 0.0), around, Spare(ROOM_M))
+        away_m = max(math.hypot(pose.x, pose.y), _SEEN_M)
+        shares = (-_SEEN_M / away_m, _SEEN_M / away_m)
+        if scatter == Scatter():
+            for share in shares:
+                yield _Case(errand_at(pose, share * pose.x, share * pose.y), around)
+            return
+        options = [self._options_of(each) for each in around]
+        amid = Surroundings(start, place, options, self.planner.gripper, self.table.height)
+        turns = turns_of(scatter)
+        for number, (x, y) in enumerate(product(_SIDES, _SIDES)):
+            moved = {"x": pose.x + x * scatter.xy, "y": pose.y + y * scatter.xy}
+            corner = [
+                pose.model_copy(update={**moved, "yaw": pose.yaw + turn})
+                for turn in (turns if number % 2 else turns[::-1])
+            ]
+            worst = amid.worst([(errand_at(at, 0.0, 0.0), at) for at in corner])
+            if worst is not None:
+                exact, draw = worst
+                seen = errand_at(draw.at, x * _SEEN_M, y * _SEEN_M)
+                yield _Case(seen, draw.around, exact=exact)
+
+    def _options_of(self, standing: Standing) -> Options:
+        pose = standing.pose
+        key = (standing.where, pose.x, pose.y, pose.yaw, self.scatter.xy, self.scatter.yaw)
+        if key not in self._known:
+            self._known[key] = options_of(standing, self.scatter)
+        return self._known[key]
 
     def _tight(self, hindrance: Hindrance) -> SceneProblem:
         """What lacks least is what is easiest to mend."""
@@ -152,7 +195,7 @@ class ArmCheck:
         lacking_m, least = min(
             ((self._lacking_m(each), each) for each in crowded), key=lambda pair: pair[0]
         )
-        name, neighbour = hindrance.start.name, _spoken_of(least.by, hindrance.around)
+        name, neighbour = hindrance.start.name, _spoken_of(least.by, hindrance.drawn)
         apart = f"put them at least {1e3 * lacking_m:.0f} mm further apart"
         if least.at_place and hindrance.place is not None:
             return SceneProblem(
@@ -168,7 +211,7 @@ class ArmCheck:
     def _lacking_m(self, crowding: Crowding) -> float:
         """How much further away from the part its neighbour would leave room."""
         near, tool = crowding.by, crowding.grip.tool
-        gripper, spare = self.planner.gripper, self._spare
+        gripper, spare = self.planner.gripper, Spare(ROOM_M)
         dx, dy = near.x - tool.x, near.y - tool.y
         away_m = math.hypot(dx, dy)
         cos, sin = (dx / away_m, dy / away_m) if away_m > 0.0 else (1.0, 0.0)
@@ -186,12 +229,12 @@ class ArmCheck:
         bar = at_once(
             bar_of(
                 hindrance.barred,
-                _boxes(hindrance.around),
+                _boxes(hindrance.drawn),
                 lambda boxes: plan_amid(errand, self.planner, self.table, boxes),
                 lambda box: carries(box, errand, self.table.height),
             )
         )
-        return None if bar is None else next(e for e in hindrance.around if bar in e.boxes)
+        return None if bar is None else next(e for e in hindrance.drawn if bar in e.boxes)
 
     def _in_the_way(self, hindrance: Hindrance, bar: Standing, moved: set[str]) -> SceneProblem:
         end = self._barred_end(hindrance)
