@@ -22,6 +22,7 @@ from mend.robots.arm.behaviors.planning import (
 from mend.robots.arm.clearance import ROOM_M
 from mend.robots.arm.feasibility.scattering import Options, Surroundings, options_of, turns_of
 from mend.robots.arm.feasibility.standing import Standing, beneath
+from mend.robots.arm.feasibility.strewn import strewn_part
 from mend.robots.link.messages import Location
 from mend.robots.vision.seen_box import SeenBox
 from mend.tasks.scene import Pose, Scatter, Table
@@ -31,10 +32,6 @@ _SEEN_M = 0.0015
 """A part may be seen so far away from where it is."""
 _SIDES = (-1.0, 1.0)
 _STEP_M, _STEPS = 0.002, 100
-_MM_M = 0.001
-_SCATTER_STEP_M = 0.0005
-_SCATTER_SHARES = 8
-"""More scatter may be possible where less is not: what is told is the first that is not, so far."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +100,13 @@ class ArmCheck:
     def told(self, hindrance: Hindrance, moved: set[str]) -> SceneProblem:
         """The hindrance in a sentence; `moved` are the parts that leaves take away."""
         reason = hindrance.barred.reason
-        if self.scatter.xy > 0.0 and self._strewn(0.0).possible(hindrance):
-            return self._too_strewn(hindrance)
+        strewn = strewn_part(
+            hindrance.start,
+            self.scatter,
+            lambda scatter: replace(self, scatter=scatter).possible(hindrance),
+        )
+        if strewn is not None:
+            return strewn
         if isinstance(reason, Crowding):
             return self._tight(hindrance)
         bar = self._bar(hindrance)
@@ -117,33 +119,6 @@ class ArmCheck:
     def possible(self, hindrance: Hindrance) -> bool:
         """Whether the same part could be taken there amid the same things."""
         return self.hindrance(hindrance.start, hindrance.place, hindrance.around) is None
-
-    def _strewn(self, xy_m: float) -> "ArmCheck":
-        """The same with parts that start up to so far from where the scene says."""
-        return replace(self, scatter=self.scatter.model_copy(update={"xy": xy_m}))
-
-    def _too_strewn(self, hindrance: Hindrance) -> SceneProblem:
-        """What is possible but for the scatter; told once for a scene."""
-        most_m = self.scatter.xy
-        steps = [share / _SCATTER_SHARES for share in range(1, _SCATTER_SHARES + 1)]
-        fails_m = next(
-            s * most_m for s in steps if not self._strewn(s * most_m).possible(hindrance)
-        )
-        fits_m = fails_m - most_m / _SCATTER_SHARES
-        while fails_m - fits_m > _SCATTER_STEP_M:
-            half_m = (fits_m + fails_m) / 2
-            if self._strewn(half_m).possible(hindrance):
-                fits_m = half_m
-            else:
-                fails_m = half_m
-        name, start = hindrance.start.name, hindrance.start.pose
-        return SceneProblem(
-            ("scatter", "xy"),
-            f"a scatter of {1e3 * self.scatter.xy:g} mm may put {name} where the arm cannot take "
-            f"it: make it smaller ({name} could be taken with "
-            f"{1e3 * math.floor(fits_m / _MM_M) * _MM_M:.0f} mm), or move {name}, which is at "
-            f"({start.x:.3f}, {start.y:.3f})",
-        )
 
     def _cases(
         self, start: Standing, place: Standing | None, around: Sequence[Standing]

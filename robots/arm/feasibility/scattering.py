@@ -23,7 +23,8 @@ from mend.tasks.scene import DRAWN_APART_M, Pose, Scatter
 Rooms = NDArray[np.float64]
 """The room in metres that each way to grasp (n) has."""
 
-_SIDES = (-1.0, 0.0, 1.0)
+_MOST_STEP_M, _MOST_STEPS = 0.01, 4
+"""Between the places of something that are looked at: in less room than fingers are thick."""
 _MOST_TURN_RAD = 0.3
 """Between the directions of a part that are looked at."""
 NEAR_M = 0.25
@@ -65,16 +66,17 @@ class Options:
 def options_of(standing: Standing, scatter: Scatter) -> Options:
     """Where something that starts may be; what is at its place is there."""
     poses = [standing.pose]
+    shifts_m = _spread(scatter.xy, _MOST_STEP_M, _MOST_STEPS)
     if standing.where[0] == "objects":
         moved = [
             standing.pose.model_copy(
                 update={
-                    "x": standing.pose.x + dx * scatter.xy,
-                    "y": standing.pose.y + dy * scatter.xy,
+                    "x": standing.pose.x + dx,
+                    "y": standing.pose.y + dy,
                     "yaw": standing.pose.yaw + turn,
                 }
             )
-            for dx, dy, turn in product(_SIDES, _SIDES, turns_of(scatter))
+            for dx, dy, turn in product(shifts_m, shifts_m, turns_of(scatter))
         ]
         poses += [each for each in moved if each != standing.pose]
     standings = [replace(standing, pose=pose) for pose in poses]
@@ -90,10 +92,15 @@ def options_of(standing: Standing, scatter: Scatter) -> Options:
 
 def turns_of(scatter: Scatter) -> list[float]:
     """The directions that are looked at, from one end to the other."""
-    if scatter.yaw == 0.0:
+    return _spread(scatter.yaw, _MOST_TURN_RAD)
+
+
+def _spread(most: float, step: float, most_steps: int = 12) -> list[float]:
+    """From -most to most, 0 among them, hardly farther apart than a step."""
+    if most == 0.0:
         return [0.0]
-    halves = max(1, math.ceil(scatter.yaw / _MOST_TURN_RAD))
-    return [scatter.yaw * step / halves for step in range(-halves, halves + 1)]
+    steps = min(math.ceil(most / step), most_steps)
+    return [most * each / steps for each in range(-steps, steps + 1)]
 
 
 class Surroundings:
