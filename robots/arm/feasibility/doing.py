@@ -32,6 +32,8 @@ _SEEN_M = 0.0015
 """A part may be seen so far away from where it is."""
 _SIDES = (-1.0, 1.0)
 _STEP_M, _STEPS = 0.002, 100
+_TRIES = 30
+"""So many steps more than what is measured are tried by planning."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,7 +173,12 @@ class ArmCheck:
             ((self._lacking_m(each), each) for each in crowded), key=lambda pair: pair[0]
         )
         name, neighbour = hindrance.start.name, _spoken_of(least.by, hindrance.drawn)
-        apart = f"put them at least {1e3 * lacking_m:.0f} mm further apart"
+        enough_m = self._enough_m(hindrance, least, lacking_m)
+        apart = (
+            "move one of them"
+            if enough_m is None
+            else f"put them at least {1e3 * enough_m:.0f} mm further apart"
+        )
         if least.at_place and hindrance.place is not None:
             return SceneProblem(
                 hindrance.place.where,
@@ -182,6 +189,36 @@ class ArmCheck:
             hindrance.start.where,
             f"{neighbour} is too close to {name} for the fingers to grasp {name}: {apart}",
         )
+
+    def _enough_m(self, hindrance: Hindrance, crowding: Crowding, lacking_m: float) -> float | None:
+        """How much further away the neighbour is in nobody's way; None if none of it is enough.
+
+        It moves straight away from the part; what only others hinder then is told of them.
+        """
+        end = hindrance.start
+        if crowding.at_place and hindrance.place is not None:
+            end = hindrance.place
+        number = next(n for n, each in enumerate(hindrance.drawn) if crowding.by in each.boxes)
+        where = hindrance.drawn[number].where
+        near = next(each for each in hindrance.around if each.where == where)
+        dx, dy = near.pose.x - end.pose.x, near.pose.y - end.pose.y
+        away_m = math.hypot(dx, dy)
+        if away_m == 0.0:
+            return None
+        for step in range(_TRIES):
+            shift_m = lacking_m + step * _STEP_M
+            pose = near.pose.model_copy(
+                update={
+                    "x": near.pose.x + dx / away_m * shift_m,
+                    "y": near.pose.y + dy / away_m * shift_m,
+                }
+            )
+            moved = replace(near, pose=pose)
+            around = [moved if each is near else each for each in hindrance.around]
+            found = self.hindrance(hindrance.start, hindrance.place, around)
+            if found is None or near.name not in found.names:
+                return shift_m
+        return None
 
     def _lacking_m(self, crowding: Crowding) -> float:
         """How much further away from the part its neighbour would leave room."""
