@@ -288,7 +288,7 @@ def test_no_scatter_puts_a_part_off_the_one_on_which_it_starts() -> None:
     assert "may put high off low, on which it starts" in found.message
 
 
-def test_too_large_a_scatter_is_told_once_and_not_as_out_of_reach() -> None:
+def test_too_large_a_scatter_is_told_once_for_each_reason_and_not_as_out_of_reach() -> None:
     parts = {f"part_{n}": box(0.5, -0.5 + 0.2 * n) for n in range(2)}
     made = scene(parts, target=FREE)
     scattered = made.model_copy(update={"scatter": Scatter(xy=0.4)})
@@ -298,7 +298,7 @@ def test_too_large_a_scatter_is_told_once_and_not_as_out_of_reach() -> None:
     assert found.where == ("scatter", "xy")
     assert "a scatter of 400 mm may put part_0, at (0.500, -0.500), over the edge" in found.message
     assert also.where == ("scatter", "xy")
-    assert "may put part_1 where the arm cannot take it" in also.message
+    assert "may put 2 parts where the arm cannot take them" in also.message
 
 
 @given(
