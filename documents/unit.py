@@ -22,16 +22,31 @@ class Unit:
 
 def unit_at(model: type[BaseModel], location: Sequence[int | str]) -> str | None:
     """What the number at a location of a model's document is in; None if that is not said."""
-    found: list[Any] = [model]
-    for step in location:
-        found = [inner for each in found for inner in _inside(each, step)]
+    found = _at(model, location)
     return next((each.name for each in found if isinstance(each, Unit)), None)
+
+
+def model_at(model: type[BaseModel], location: Sequence[int | str]) -> type[BaseModel] | None:
+    """The model of a part of a model's document; None if there is none, or several may be meant."""
+    models = [
+        each
+        for each in _at(model, location)
+        if isinstance(each, type) and issubclass(each, BaseModel)
+    ]
+    return models[0] if len(models) == 1 else None
 
 
 def unit_of_name(location: Sequence[int | str]) -> str | None:
     """What the number at a location is in, by the end of its name, as in `timeout_s`."""
     name = next((each for each in reversed(location) if isinstance(each, str)), "")
     return _BY_ENDING.get(name.rpartition("_")[2]) if "_" in name else None
+
+
+def _at(model: type[BaseModel], location: Sequence[int | str]) -> list[Any]:
+    found: list[Any] = [model]
+    for step in location:
+        found = [inner for each in found for inner in _inside(each, step)]
+    return found
 
 
 def _inside(kind: Any, step: int | str) -> Iterator[Any]:

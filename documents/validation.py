@@ -10,7 +10,7 @@ from pydantic_core import ErrorDetails
 from mend.documents.document import LinedMapping, LinedSequence
 from mend.documents.plain_mistakes import what_it_must_be
 from mend.documents.problem import Problem, list_names
-from mend.documents.unit import unit_at, unit_of_name
+from mend.documents.unit import model_at, unit_at, unit_of_name
 
 _MAX_VALUE_CHARACTERS = 60
 _OF_NUMBERS = ("greater_", "less_", "float_", "int_", "finite_")
@@ -95,7 +95,9 @@ def show_kind(value: Any) -> str:
 
 
 def _known_keys(mistake: ErrorDetails, model: type[BaseModel]) -> str:
-    return list_names(model.model_fields) if len(mistake["loc"]) == 1 else ""
+    """What there may be where a key is unknown; empty where that depends."""
+    inner = model_at(model, mistake["loc"][:-1])
+    return "" if inner is None else list_names(inner.model_fields)
 
 
 def _show(value: Any) -> str:

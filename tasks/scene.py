@@ -100,6 +100,10 @@ class Base(StrictModel):
     yaw: QuarterTurns = 0.0
 
 
+DRAWN_APART_M = 0.004
+"""A start that is drawn nearer to another part is drawn anew."""
+
+
 class Scatter(StrictModel):
     """How far a world may move an object's start pose, uniformly, by its seed."""
 

@@ -133,8 +133,13 @@ def _find_scene(
     except NotInLibraryError as error:
         message = str(error)
     except InvalidFileError as error:
-        first = error.problems[0].describe(error.source)
-        message = f"the scene '{name}' has mistakes, the first one: {first}"
+        line = document.line_of("scene")
+        # Each in its own line of what is told, and as many as of one file.
+        problems += [
+            Problem(line, None, f"the scene '{name}' has a mistake: {each}")
+            for each in str(error).splitlines()
+        ]
+        return None
     problems.append(Problem(document.line_of("scene"), None, message))
     return None
 

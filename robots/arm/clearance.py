@@ -73,6 +73,33 @@ def room_around(
     return Gap(float(left[nearest]), boxes[some[nearest]])
 
 
+def rooms_around(
+    gripper: GripperModel,
+    tool: ToolPose,
+    opening_m: float,
+    boxes: Sequence[SeenBox],
+    outlines: NDArray[np.object_],
+    *,
+    closed_m: float,
+    most_m: float,
+) -> NDArray[np.float64]:
+    """The room that each of `boxes`, by itself, leaves a gripper (`room_around`), up to `most_m`.
+
+    `outlines` are the polygons of the boxes.
+    """
+    rooms = gripper.swept_boxes(closed_m, opening_m)
+    corners = _outlines(rooms, tool)
+    bottoms = np.array([tool.z + room.bottom_m for room in rooms])
+    above = bottoms[:, None] - np.array([box.top_z for box in boxes])[None, :]
+    left_m = np.maximum(_circles_apart_m(corners, boxes), above)
+    near, some = np.nonzero(left_m < most_m)
+    fingers = np.asarray(shapely.polygons(corners))
+    left_m[near, some] = np.maximum(
+        shapely.distance(fingers[near], outlines[some]), above[near, some]
+    )
+    return np.asarray(left_m.min(axis=0).clip(max=most_m))
+
+
 def in_the_way(
     gripper: GripperModel,
     tool: ToolPose,

@@ -30,20 +30,32 @@ def check(
             "run here."
         ),
     ] = None,
+    tree: Annotated[
+        str | None,
+        typer.Option(
+            help="Of a scenario: its task tree, by its name in the library or as a file; without "
+            "it, looked for in the library, beside the scenario and in the folder above."
+        ),
+    ] = None,
 ) -> None:
     """Check a task, scene, scenario or delivery file, and name every mistake with its line.
 
     Also what the robot of a world cannot do: parts that it cannot grasp or tell apart, that it
     cannot reach, that have no room. The exit code is 1 if there are any mistakes.
     """
-    from mend.server.cli.mistakes import CHECKERS, in_worlds
+    from mend.server.cli.mistakes import CHECKERS, in_worlds, scenario_mistakes
     from mend.server.cli.task_files import read_text
     from mend.server.scene_checks import load_world_checks
 
     with told_plainly():
         kind = kind_of_file(read_text(file))
         worlds = load_world_checks()
-        checked = CHECKERS[kind](file, worlds if world is None else worlds.only(world))
+        asked = worlds if world is None else worlds.only(world)
+        if tree is not None and kind != "scenario":
+            raise CommandLineError(f"--tree is for scenarios, but '{file}' is a {kind} file")
+        checked = (
+            CHECKERS[kind](file, asked) if tree is None else scenario_mistakes(file, asked, tree)
+        )
     if checked.mistakes:
         raise CommandLineError("\n".join(checked.mistakes), NOT_FINISHED)
     where = f" {in_worlds(checked.worlds)}" if checked.worlds else ""

@@ -8,15 +8,17 @@ from mend.documents.problem import InvalidFileError, Problem
 from mend.server.behaviors import behavior_step_counts
 from mend.server.cli.task_files import (
     SceneSource,
+    is_file,
     read_task,
     scene_of_task_file,
     task_of_scenario_file,
 )
 from mend.server.scene_checks import WorldChecks
 from mend.tasks.library import NotInLibraryError
-from mend.tasks.scenario_file import Misfit, find_misfits, read_scenario_file
+from mend.tasks.scenario_file import Misfit, ReadScenario, find_misfits, read_scenario_file
 from mend.tasks.scene_file import read_scene_file
 from mend.tasks.scene_problem import SceneProblem
+from mend.tasks.task_file import CheckedTask
 
 InWorlds = Mapping[str, Iterable[SceneProblem]]
 """What each world's robot cannot do."""
@@ -52,18 +54,35 @@ def scene_mistakes(path: Path, worlds: WorldChecks) -> Checked:
     return _in_scene(worlds.try_scene(found.read.scene), found)
 
 
-def scenario_mistakes(path: Path, worlds: WorldChecks) -> Checked:  # noqa: ARG001
-    """Every mistake of a scenario file, also what it expects of its tree and does not get."""
+def scenario_mistakes(
+    path: Path,
+    worlds: WorldChecks,  # noqa: ARG001
+    tree: str | None = None,
+) -> Checked:
+    """Every mistake of a scenario file, also what it expects of its tree and does not get.
+
+    `tree` names the tree, or its file, where that is given.
+    """
     try:
         read = read_scenario_file(path)
-        task = task_of_scenario_file(path, read.scenario.tree)
+        task = _task_of(path, read, tree)
     except InvalidFileError as error:
         return Checked(str(error).splitlines())
     except NotInLibraryError as error:
         misfits = [Misfit(("tree",), str(error))]
     else:
+        if task.definition.name != read.scenario.tree:
+            other = task.definition.name
+            message = f"the scenario is for the task tree '{read.scenario.tree}', not '{other}'"
+            return Checked([read.problem(Misfit(("tree",), message)).describe(str(path))])
         misfits = find_misfits(read.scenario, task.definition, task.scene, behavior_step_counts())
     return Checked([read.problem(each).describe(str(path)) for each in misfits])
+
+
+def _task_of(path: Path, read: ReadScenario, tree: str | None) -> CheckedTask:
+    if tree is not None and is_file(tree):
+        return read_task(Path(tree))
+    return task_of_scenario_file(path, tree or read.scenario.tree)
 
 
 def delivery_mistakes(path: Path, worlds: WorldChecks) -> Checked:  # noqa: ARG001

@@ -7,7 +7,7 @@ from pathlib import Path
 from mend.documents.problem import InvalidFileError
 from mend.server.behaviors import behavior_parameters, behavior_step_counts
 from mend.server.cli.failures import CommandLineError
-from mend.server.cli.task_files import SceneSource, read_task, read_text
+from mend.server.cli.task_files import SceneSource, is_file, read_task, read_text
 from mend.server.documents import DocumentKind
 from mend.server.fixed_documents import GivenFiles
 from mend.tasks.library import TREES
@@ -17,8 +17,6 @@ from mend.tasks.scene import Scene
 from mend.tasks.scene_file import built_in_scene, check_scene_file, read_scene_file
 from mend.tasks.scene_problem import SceneProblem
 from mend.tasks.task_file import CheckedTask, check_built_in_task
-
-SUFFIXES = (".yaml", ".yml", ".json")
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +57,6 @@ def read_run_files(tree: str, scene: str | None, scenario: str | None) -> RunFil
     script = _read_scenario(scenario, task, chosen, texts) if scenario else None
     named = chosen.name if chosen else None
     return RunFiles(name, named, script, GivenFiles(texts), file)
-
-
-def is_file(argument: str) -> bool:
-    """Whether an argument names a file rather than something of the library."""
-    return Path(argument).suffix in SUFFIXES or "/" in argument
 
 
 def _read_tree(

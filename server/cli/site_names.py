@@ -3,8 +3,7 @@
 from pathlib import Path
 
 from mend.server.cli.failures import CommandLineError
-from mend.server.cli.run_files import is_file
-from mend.server.cli.task_files import read_text
+from mend.server.cli.task_files import is_file, read_text
 from mend.server.client import MendClient
 from mend.server.sites.views import SiteView
 from mend.tasks.scene_file import check_scene_file

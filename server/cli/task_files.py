@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from mend.documents.problem import Problem
+from mend.documents.problem import Problem, list_names
 from mend.server.behaviors import behavior_parameters
 from mend.server.cli.failures import CommandLineError
 from mend.tasks.library import SCENES, NotInLibraryError
@@ -11,6 +11,8 @@ from mend.tasks.scene import Scene
 from mend.tasks.scene_file import ReadScene, check_scene_file, read_scene_file, read_scene_text
 from mend.tasks.scene_problem import SceneProblem
 from mend.tasks.task_file import CheckedTask, check_built_in_task, check_task_file
+
+SUFFIXES = (".yaml", ".yml", ".json")
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,14 +61,25 @@ def scene_of_task_file(path: Path, name: str) -> SceneSource:
 
 
 def task_of_scenario_file(path: Path, tree: str) -> CheckedTask:
-    """The task tree that a scenario file is for: of the library, else beside it.
+    """The task tree that a scenario file is for: of the library, else a file of its name.
 
-    Raises `NotInLibraryError` and `InvalidFileError`.
+    That is beside the scenario, or in the folder above. Raises `NotInLibraryError` and
+    `InvalidFileError`.
     """
     try:
         return check_built_in_task(tree, behavior_parameters())
-    except NotInLibraryError:
-        beside = path.parent / f"{tree}.yaml"
-        if not beside.is_file():
-            raise
-        return read_task(beside)
+    except NotInLibraryError as error:
+        folders = (path.parent, path.parent / "..")
+        files = [folder / f"{tree}{suffix}" for folder in folders for suffix in SUFFIXES]
+        found = next((each for each in files if each.is_file()), None)
+        if found is None:
+            looked = list_names(str(each) for each in files)
+            raise NotInLibraryError(
+                f"{error}, nor is there any of the files {looked}; or name its file with --tree"
+            ) from error
+        return read_task(found)
+
+
+def is_file(argument: str) -> bool:
+    """Whether an argument names a file rather than something of the library."""
+    return Path(argument).suffix in SUFFIXES or "/" in argument

@@ -7,7 +7,7 @@ import numpy as np
 from mend.sim.workcell.parts import PartPose, RigidPart
 from mend.sim.workcell.physics import LEAST_DISTANCE_M, Client
 from mend.sim.workcell.pr2 import Pr2
-from mend.tasks.scene import Scene, Table
+from mend.tasks.scene import DRAWN_APART_M, Scene, Table
 
 _FLOOR_HALF_M = 4.0
 _SLAB_M = 0.04
@@ -15,7 +15,6 @@ _FLOOR_COLOR = (0.60, 0.60, 0.58, 1.0)
 TABLE_COLOR = (0.80, 0.78, 0.74, 1.0)
 _TABLE_FRICTION = 0.6
 
-_APART_M = 0.004
 _SCATTER_TRIES = 100
 _DROP_M = 0.001
 """Parts are let go this far above what they are to rest on."""
@@ -47,7 +46,7 @@ class Bench:
             for attempt in range(_SCATTER_TRIES + 1):
                 scattered = attempt < _SCATTER_TRIES
                 part.put(self._start_pose(part, rng if scattered else None))
-                if next(self.intersecting(part, apart_m=_APART_M), None) is None:
+                if next(self.intersecting(part, apart_m=DRAWN_APART_M), None) is None:
                     break
 
     def remember_starts(self) -> None:

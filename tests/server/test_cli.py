@@ -25,6 +25,7 @@ from mend.server.documents import DocumentKind
 from mend.server.journal import events as ev
 from mend.server.journal.reader import JournalReader
 from mend.server.journal.sqlite import SqliteJournal
+from mend.tasks.library import TREES
 
 SCENE = """\
 name: bench
@@ -394,10 +395,28 @@ def test_a_scenario_for_a_tree_that_there_is_not_is_refused_with_its_line(
     mend: Mend, tmp_path: Path
 ) -> None:
     file = write_file(tmp_path, STEP_TWELVE.replace("eket", "moon"))
-    assert f"{file}:2: there is no task tree 'moon'" in mend("check", str(file)).err
+    told = mend("check", str(file)).err
+    assert f"{file}:2: there is no task tree 'moon'" in told
+    assert f"'{tmp_path / 'moon.yaml'}'" in told
+    assert "--tree" in told
     refused = mend("run", "eket", "--scenario", str(file))
     assert refused.code == 2
     assert f"{file}:2: the scenario is for the task tree 'moon', not 'eket'" in refused.err
+
+
+def test_the_tree_of_a_scenario_is_found_above_it_or_where_it_is_said_to_be(
+    mend: Mend, tmp_path: Path
+) -> None:
+    (tmp_path / "scripts").mkdir()
+    file = tmp_path / "scripts" / "script.yaml"
+    file.write_text("name: script\ntree: moon\nanswers: [yes]\n".replace("yes", "'yes'"))
+    tree = TREES.read("eket").replace("name: eket", "name: moon", 1)
+    (tmp_path / "moon.yml").write_text(tree)
+    assert mend("check", str(file)).code == 0
+    (tmp_path / "moon.yml").rename(tmp_path / "elsewhere.yaml")
+    assert mend("check", str(file)).code == 1
+    assert mend("check", str(file), "--tree", str(tmp_path / "elsewhere.yaml")).code == 0
+    assert "not 'eket'" in mend("check", str(file), "--tree", "eket").err
 
 
 @pytest.mark.parametrize(

@@ -168,3 +168,10 @@ def test_an_unknown_name_is_told_in_a_short_sentence() -> None:
     with pytest.raises(NotInLibraryError) as told:
         SCENES.read("x" * 100_000)
     assert len(str(told.value)) < 400
+
+
+def test_of_an_unknown_key_deep_inside_the_known_ones_are_told() -> None:
+    text = "name: s\nobjects: {}\nplaces: {p: {pose: {x: 0.5, y: 0.1, roll: 1.0}}}\n"
+    with pytest.raises(InvalidFileError) as caught:
+        check_scene_text(text)
+    assert "unknown key 'places.p.pose.roll'; known are 'x', 'y', 'yaw', 'z'" in str(caught.value)

@@ -172,9 +172,18 @@ def test_a_scene_beside_the_file_comes_before_the_library(tmp_path: Path) -> Non
     (tmp_path / "t.yaml").write_text(TREES.read("eket"))
     with pytest.raises(InvalidFileError, match="the scene 'eket' has no object 'green_leg'"):
         check_task_file(tmp_path / "t.yaml", BEHAVIORS)
-    (tmp_path / "scenes" / "eket.yaml").write_text("name: 5\nobjects: {}\nplaces: {}\n")
-    with pytest.raises(InvalidFileError, match="the scene 'eket' has mistakes, the first one"):
+
+
+def test_every_mistake_of_its_scene_is_told(tmp_path: Path) -> None:
+    (tmp_path / "scenes").mkdir()
+    (tmp_path / "t.yaml").write_text(TREES.read("eket"))
+    (tmp_path / "scenes" / "eket.yaml").write_text("name: 5\nobjects: {}\nplace: {}\n")
+    with pytest.raises(InvalidFileError) as caught:
         check_task_file(tmp_path / "t.yaml", BEHAVIORS)
+    told = [each.message for each in caught.value.problems if "has a mistake" in each.message]
+    assert len(told) == 3
+    assert all(each.startswith("the scene 'eket' has a mistake: ") for each in told)
+    assert any("eket.yaml:3: unknown key 'place'" in each for each in told)
 
 
 def test_of_a_scene_that_is_nowhere_it_is_told_which_file_was_looked_for(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from mend.robots.arm.feasibility.merging import one_surface
 from mend.robots.arm.feasibility.moments import Job, Moment, Moments
 from mend.robots.arm.feasibility.sight import hidden, out_of_picture
 from mend.robots.arm.feasibility.standing import Standing, at_place, starts
+from mend.robots.arm.feasibility.strewn import StrewnPart, told_together
 from mend.robots.arm.feasibility.support import cannot_stand
 from mend.robots.vision.viewpoint import Viewpoint
 from mend.tasks.alternatives import MOST_COMPARED_LEAVES, distinct_alternatives
@@ -262,11 +263,15 @@ class _RobotCheck:
 
 
 def _each_once(found: Sequence[SceneProblem]) -> list[SceneProblem]:
-    """What is wrong with the scatter, which all parts have in common, is told of one of them."""
-    of_scatter = [each for each in found if each.where[0] == "scatter"]
-    return [
-        each for each in dict.fromkeys(found) if each.where[0] != "scatter" or each is of_scatter[0]
-    ]
+    """The parts that the scatter puts out of the arm's way are told together.
+
+    What else is wrong with the scatter, which all parts have in common, is told of one of them.
+    """
+    strewn = [each for each in found if isinstance(each, StrewnPart)]
+    rest = [each for each in dict.fromkeys(found) if not isinstance(each, StrewnPart)]
+    of_scatter = [each for each in rest if each.where[0] == "scatter"]
+    once = [each for each in rest if each.where[0] != "scatter" or each is of_scatter[0]]
+    return [*once, *told_together(strewn)]
 
 
 class _ToldProblems:

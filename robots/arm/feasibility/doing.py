@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 from mend.robots.arm.behaviors.behavior import Situation, Step
@@ -20,7 +20,9 @@ from mend.robots.arm.behaviors.planning import (
     plan_amid,
 )
 from mend.robots.arm.clearance import ROOM_M
+from mend.robots.arm.feasibility.scattering import Options, Surroundings, options_of, turns_of
 from mend.robots.arm.feasibility.standing import Standing, beneath
+from mend.robots.arm.feasibility.strewn import strewn_part
 from mend.robots.link.messages import Location
 from mend.robots.vision.seen_box import SeenBox
 from mend.tasks.scene import Pose, Scatter, Table
@@ -30,10 +32,8 @@ _SEEN_M = 0.0015
 """A part may be seen so far away from where it is."""
 _SIDES = (-1.0, 1.0)
 _STEP_M, _STEPS = 0.002, 100
-_MM_M = 0.001
-_SCATTER_STEP_M = 0.0005
-_SCATTER_SHARES = 8
-"""More scatter may be possible where less is not: what is told is the first that is not, so far."""
+_TRIES = 30
+"""So many steps more than what is measured are tried by planning."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +43,7 @@ class Hindrance:
     start: Standing
     place: Standing | None
     around: Sequence[Standing]
+    drawn: Sequence[Standing]
     errand: Errand
     barred: Barred
 
@@ -56,12 +57,23 @@ class Hindrance:
 
 
 @dataclass(frozen=True, slots=True)
+class _Case:
+    """An errand amid what stands there then; `exact` is the same with the part seen where it is."""
+
+    errand: Errand
+    drawn: Sequence[Standing]
+    spare: Spare = AS_SEEN
+    exact: Errand | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class ArmCheck:
     """The arm of the robot that is to do it."""
 
     planner: Planner
     scatter: Scatter
     table: Table
+    _known: dict[tuple[object, ...], Options] = field(default_factory=dict, compare=False)
 
     def hindrance(
         self, start: Standing, place: Standing | None, around: Sequence[Standing]
@@ -70,20 +82,33 @@ class ArmCheck:
 
         Without a place it is only to be lifted.
         """
-        boxes = _boxes(around)
-        bottom_z = _rest_z(start, around)
-        for at, spare in self._seen_at(start.pose):
-            errand = _errand(start, at, bottom_z, place, around)
-            found = at_once(plan_amid(errand, self.planner, self.table, boxes, spare))
-            if isinstance(found, Barred):
-                return Hindrance(start, place, around, errand, found)
+        for case in self._cases(start, place, around):
+            found = self._tried(case)
+            if found is None:
+                continue
+            if isinstance(found.reason, Crowding) and case.exact is not None:
+                # The fingers have room by what is so: that is only seen otherwise now and then.
+                case = replace(case, errand=case.exact, exact=None)
+                found = self._tried(case)
+            if found is not None:
+                return Hindrance(start, place, around, case.drawn, case.errand, found)
         return None
+
+    def _tried(self, case: "_Case") -> Barred | None:
+        boxes = _boxes(case.drawn)
+        found = at_once(plan_amid(case.errand, self.planner, self.table, boxes, case.spare))
+        return found if isinstance(found, Barred) else None
 
     def told(self, hindrance: Hindrance, moved: set[str]) -> SceneProblem:
         """The hindrance in a sentence; `moved` are the parts that leaves take away."""
         reason = hindrance.barred.reason
-        if self.scatter.xy > 0.0 and self._strewn(0.0).possible(hindrance):
-            return self._too_strewn(hindrance)
+        strewn = strewn_part(
+            hindrance.start,
+            self.scatter,
+            lambda scatter: replace(self, scatter=scatter).possible(hindrance),
+        )
+        if strewn is not None:
+            return strewn
         if isinstance(reason, Crowding):
             return self._tight(hindrance)
         bar = self._bar(hindrance)
@@ -97,54 +122,49 @@ class ArmCheck:
         """Whether the same part could be taken there amid the same things."""
         return self.hindrance(hindrance.start, hindrance.place, hindrance.around) is None
 
-    def _strewn(self, xy_m: float) -> "ArmCheck":
-        """The same with parts that start up to so far from where the scene says."""
-        return replace(self, scatter=self.scatter.model_copy(update={"xy": xy_m}))
+    def _cases(
+        self, start: Standing, place: Standing | None, around: Sequence[Standing]
+    ) -> Iterator["_Case"]:
+        """Where a start may be seen, what stands around it then, and what room the fingers need.
 
-    def _too_strewn(self, hindrance: Hindrance) -> SceneProblem:
-        """What is possible but for the scatter; told once for a scene."""
-        most_m = self.scatter.xy
-        steps = [share / _SCATTER_SHARES for share in range(1, _SCATTER_SHARES + 1)]
-        fails_m = next(
-            s * most_m for s in steps if not self._strewn(s * most_m).possible(hindrance)
-        )
-        fits_m = fails_m - most_m / _SCATTER_SHARES
-        while fails_m - fits_m > _SCATTER_STEP_M:
-            half_m = (fits_m + fails_m) / 2
-            if self._strewn(half_m).possible(hindrance):
-                fits_m = half_m
-            else:
-                fails_m = half_m
-        name, start = hindrance.start.name, hindrance.start.pose
-        return SceneProblem(
-            ("scatter", "xy"),
-            f"a scatter of {1e3 * self.scatter.xy:g} mm may put {name} where the arm cannot take "
-            f"it: make it smaller ({name} could be taken with "
-            f"{1e3 * math.floor(fits_m / _MM_M) * _MM_M:.0f} mm), or move {name}, which is at "
-            f"({start.x:.3f}, {start.y:.3f})",
-        )
-
-    @property
-    def _spare(self) -> Spare:
-        """More room than a robot needs by what it sees, as that is never exact."""
-        return Spare(ROOM_M, self.scatter.xy)
-
-    def _seen_at(self, pose: Pose) -> Iterator[tuple[Pose, Spare]]:
-        """Where a start may be seen, and what room the fingers need there.
-
-        Where it is, with room to spare; and at the corners of what it is scattered over, or nearer
-        and farther away.
+        Where it is, with room to spare; and nearer and farther away, or at the corners of what it
+        is scattered over, amid what is scattered as well.
         """
-        yield pose, self._spare
-        shift_m = self.scatter.xy
-        if shift_m == 0.0:
-            away_m = max(math.hypot(pose.x, pose.y), _SEEN_M)
-            shifts = [(pose.x * far, pose.y * far) for far in (-_SEEN_M / away_m, _SEEN_M / away_m)]
-        else:
-            off_m = shift_m + _SEEN_M
-            shifts = [(dx * off_m, dy * off_m) for dx, dy in product(_SIDES, _SIDES)]
-        for dx, dy in shifts:
-            yield pose.model_copy(update={"x": pose.x + dx, "y": pose.y + dy}), AS_SEEN
+        bottom_z = _rest_z(start, around)
+
+        def errand_at(pose: Pose, dx: float, dy: float) -> Errand:
+            seen = pose.model_copy(update={"x": pose.x + dx, "y": pose.y + dy})
+            return _errand(start, seen, bottom_z, place, around)
+
+        pose, scatter = start.pose, self.scatter
+        yield _Case(errand_at(pose, 0.0, 0.0), around, Spare(ROOM_M))
+        away_m = max(math.hypot(pose.x, pose.y), _SEEN_M)
+        shares = (-_SEEN_M / away_m, _SEEN_M / away_m)
+        if scatter == Scatter():
+            for share in shares:
+                yield _Case(errand_at(pose, share * pose.x, share * pose.y), around)
+            return
+        options = [self._options_of(each) for each in around]
+        amid = Surroundings(start, place, options, self.planner.gripper, self.table.height)
+        turns = turns_of(scatter)
+        for number, (x, y) in enumerate(product(_SIDES, _SIDES)):
+            moved = {"x": pose.x + x * scatter.xy, "y": pose.y + y * scatter.xy}
+            corner = [
+                pose.model_copy(update={**moved, "yaw": pose.yaw + turn})
+                for turn in (turns if number % 2 else turns[::-1])
+            ]
+            worst = amid.worst([(errand_at(at, 0.0, 0.0), at) for at in corner])
+            if worst is not None:
+                exact, draw = worst
+                seen = errand_at(draw.at, x * _SEEN_M, y * _SEEN_M)
+                yield _Case(seen, draw.around, exact=exact)
+
+    def _options_of(self, standing: Standing) -> Options:
+        pose = standing.pose
+        key = (standing.where, pose.x, pose.y, pose.yaw, self.scatter.xy, self.scatter.yaw)
+        if key not in self._known:
+            self._known[key] = options_of(standing, self.scatter)
+        return self._known[key]
 
     def _tight(self, hindrance: Hindrance) -> SceneProblem:
         """What lacks least is what is easiest to mend."""
@@ -152,8 +172,13 @@ class ArmCheck:
         lacking_m, least = min(
             ((self._lacking_m(each), each) for each in crowded), key=lambda pair: pair[0]
         )
-        name, neighbour = hindrance.start.name, _spoken_of(least.by, hindrance.around)
-        apart = f"put them at least {1e3 * lacking_m:.0f} mm further apart"
+        name, neighbour = hindrance.start.name, _spoken_of(least.by, hindrance.drawn)
+        enough_m = self._enough_m(hindrance, least, lacking_m)
+        apart = (
+            "move one of them"
+            if enough_m is None
+            else f"put them at least {1e3 * enough_m:.0f} mm further apart"
+        )
         if least.at_place and hindrance.place is not None:
             return SceneProblem(
                 hindrance.place.where,
@@ -165,10 +190,40 @@ class ArmCheck:
             f"{neighbour} is too close to {name} for the fingers to grasp {name}: {apart}",
         )
 
+    def _enough_m(self, hindrance: Hindrance, crowding: Crowding, lacking_m: float) -> float | None:
+        """How much further away the neighbour is in nobody's way; None if none of it is enough.
+
+        It moves straight away from the part; what only others hinder then is told of them.
+        """
+        end = hindrance.start
+        if crowding.at_place and hindrance.place is not None:
+            end = hindrance.place
+        number = next(n for n, each in enumerate(hindrance.drawn) if crowding.by in each.boxes)
+        where = hindrance.drawn[number].where
+        near = next(each for each in hindrance.around if each.where == where)
+        dx, dy = near.pose.x - end.pose.x, near.pose.y - end.pose.y
+        away_m = math.hypot(dx, dy)
+        if away_m == 0.0:
+            return None
+        for step in range(_TRIES):
+            shift_m = lacking_m + step * _STEP_M
+            pose = near.pose.model_copy(
+                update={
+                    "x": near.pose.x + dx / away_m * shift_m,
+                    "y": near.pose.y + dy / away_m * shift_m,
+                }
+            )
+            moved = replace(near, pose=pose)
+            around = [moved if each is near else each for each in hindrance.around]
+            found = self.hindrance(hindrance.start, hindrance.place, around)
+            if found is None or near.name not in found.names:
+                return shift_m
+        return None
+
     def _lacking_m(self, crowding: Crowding) -> float:
         """How much further away from the part its neighbour would leave room."""
         near, tool = crowding.by, crowding.grip.tool
-        gripper, spare = self.planner.gripper, self._spare
+        gripper, spare = self.planner.gripper, Spare(ROOM_M)
         dx, dy = near.x - tool.x, near.y - tool.y
         away_m = math.hypot(dx, dy)
         cos, sin = (dx / away_m, dy / away_m) if away_m > 0.0 else (1.0, 0.0)
@@ -186,12 +241,12 @@ class ArmCheck:
         bar = at_once(
             bar_of(
                 hindrance.barred,
-                _boxes(hindrance.around),
+                _boxes(hindrance.drawn),
                 lambda boxes: plan_amid(errand, self.planner, self.table, boxes),
                 lambda box: carries(box, errand, self.table.height),
             )
         )
-        return None if bar is None else next(e for e in hindrance.around if bar in e.boxes)
+        return None if bar is None else next(e for e in hindrance.drawn if bar in e.boxes)
 
     def _in_the_way(self, hindrance: Hindrance, bar: Standing, moved: set[str]) -> SceneProblem:
         end = self._barred_end(hindrance)

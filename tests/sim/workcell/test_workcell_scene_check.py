@@ -1,6 +1,7 @@
 """The check of scenes asks the planner that the robot uses, amid all that will stand there."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from mend.sim.workcell.adapter import adapter as workcell
 from mend.sim.workcell.world import WorkcellWorld
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
 from mend.tasks.scene import Place, Pose, Scene, SceneObject
+from mend.tasks.scene_file import built_in_scene
 from mend.tasks.task_file import check_task_text
 
 SEEN_M = 0.001
@@ -67,6 +69,23 @@ def test_a_tall_box_that_the_arm_would_touch_is_told_of(
 @pytest.mark.parametrize(("x", "height_m"), [(0.575, 0.1), (0.64, 0.3)])
 def test_a_lower_box_and_one_farther_away_are_not_in_the_way(x: float, height_m: float) -> None:
     assert workcell.check_scene(scene_with_pillar(x, -0.4, height_m), [LEAF]) == []
+
+
+def test_neighbours_that_scatter_towards_a_part_leave_the_arm_no_room_for_it() -> None:
+    """Of eket with nothing taken away before, though each part by itself could stray so far."""
+    take = BehaviorNode(
+        parent=None,
+        name="pink_bar",
+        behavior="pick_and_place",
+        parameters={"object": "pink_bar", "place": "pink_bar"},
+    )
+    eket = built_in_scene("eket")
+    (found,) = workcell.check_scene(eket, [take])
+    assert found.where == ("scatter", "xy")
+    told = re.search(r"pink_bar could be taken with (\d+) mm", found.message)
+    assert told is not None
+    less = eket.scatter.model_copy(update={"xy": 1e-3 * int(told.group(1))})
+    assert workcell.check_scene(eket.model_copy(update={"scatter": less}), [take]) == []
 
 
 def test_a_gripper_that_floats_has_no_arm_that_could_touch_anything() -> None:

@@ -1,6 +1,7 @@
 """The check of a scene: each mistake in one sentence at its place, and nothing about what works."""
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -212,16 +213,55 @@ def test_a_tower_is_possible_and_so_is_a_part_on_four_legs() -> None:
     assert any("would tip off" in each.message for each in problems_of(made, *without_two))
 
 
+def beside_a_wall(away_m: float, scatter: Scatter, parts: int = 1) -> Scene:
+    """Boxes, each with something tall at one side."""
+    objects = {}
+    for number in range(parts):
+        y = -0.45 + 0.3 * number
+        objects[f"part_{number}"] = box(0.5, y)
+        objects[f"wall_{number}"] = box(0.5 + away_m + 0.01 * number, y, (0.02, 0.2, 0.12))
+    made = scene(objects, target=Pose(x=0.45, y=0.15))
+    return made.model_copy(update={"scatter": scatter})
+
+
 def test_scatter_needs_its_room_too() -> None:
-    made = scene({"one": box(0.5, -0.4), "two": wall(0.5, -0.34)}, target=FREE)
-    scattered = made.model_copy(update={"scatter": Scatter(xy=0.02)})
-    assert problems_of(made, leaf("one", "target", None)) == []
-    (found,) = problems_of(scattered, leaf("one", "target", None))
+    take = leaf("part_0", "target", None)
+    assert problems_of(beside_a_wall(0.06, Scatter()), take) == []
+    (found,) = problems_of(beside_a_wall(0.06, Scatter(xy=0.02)), take)
     assert found.where == ("scatter", "xy")
     assert found.message == (
-        "a scatter of 20 mm may put one where the arm cannot take it: make it smaller (one could "
-        "be taken with 5 mm), or move one, which is at (0.500, -0.400)"
+        "a scatter of 20 mm may put part_0 where the arm cannot take it: make it smaller (part_0 "
+        "could be taken with 11 mm), or move part_0, which is at (0.500, -0.450)"
     )
+    assert problems_of(beside_a_wall(0.06, Scatter(xy=0.011)), take) == []
+
+
+def test_what_only_turning_puts_out_of_reach_is_told_as_that() -> None:
+    take = leaf("part_0", "target", None)
+    (found,) = problems_of(beside_a_wall(0.06, Scatter(yaw=0.3)), take)
+    assert found.where == ("scatter", "yaw")
+    assert "a scatter of 0.3 rad may turn part_0 where the arm cannot take it" in found.message
+
+
+def test_all_parts_that_scatter_puts_out_of_reach_are_told_with_what_fits_all() -> None:
+    take = [leaf(f"part_{n}", "target", None) for n in range(2)]
+    (found,) = problems_of(beside_a_wall(0.06, Scatter(xy=0.02), parts=2), *take)
+    assert found.where == ("scatter", "xy")
+    told = re.search(
+        r"part_0 could be taken with (\d+) mm, part_1 could be taken with (\d+) mm; all of them "
+        r"with (\d+) mm",
+        found.message,
+    )
+    assert told is not None
+    first, second, both = map(int, told.groups())
+    assert both <= min(first, second)
+    assert problems_of(beside_a_wall(0.06, Scatter(xy=1e-3 * both), parts=2), *take) == []
+
+
+def test_what_is_drawn_too_near_is_drawn_anew_and_bars_nothing() -> None:
+    made = scene({"one": box(0.5, -0.4), "two": wall(0.5, -0.34)}, target=FREE)
+    scattered = made.model_copy(update={"scatter": Scatter(xy=0.02)})
+    assert problems_of(scattered, leaf("one", "target", None)) == []
 
 
 def test_no_scatter_puts_a_part_over_the_edge() -> None:
@@ -248,15 +288,17 @@ def test_no_scatter_puts_a_part_off_the_one_on_which_it_starts() -> None:
     assert "may put high off low, on which it starts" in found.message
 
 
-def test_too_large_a_scatter_is_told_once_and_not_as_out_of_reach() -> None:
+def test_too_large_a_scatter_is_told_once_for_each_reason_and_not_as_out_of_reach() -> None:
     parts = {f"part_{n}": box(0.5, -0.5 + 0.2 * n) for n in range(2)}
     made = scene(parts, target=FREE)
     scattered = made.model_copy(update={"scatter": Scatter(xy=0.4)})
     leaves = [leaf(name, "target", None) for name in parts]
     assert problems_of(made, leaves[0]) == []
-    (found,) = problems_of(scattered, *leaves)
+    found, also = problems_of(scattered, *leaves)
     assert found.where == ("scatter", "xy")
     assert "a scatter of 400 mm may put part_0, at (0.500, -0.500), over the edge" in found.message
+    assert also.where == ("scatter", "xy")
+    assert "may put 2 parts where the arm cannot take them" in also.message
 
 
 @given(
