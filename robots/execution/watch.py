@@ -4,6 +4,7 @@ from abc import ABC
 from collections.abc import Callable, Sequence
 from typing import Any, Generic, TypeVar
 
+from mend.errors import MendError
 from mend.robots.body import CameraImage
 from mend.robots.execution.effector import Effector
 from mend.robots.execution.monitor import AnyMonitor, MonitorView, Reaction
@@ -26,7 +27,7 @@ class Interruption(Exception):  # noqa: N818 - control flow, not an error
         self.reaction = reaction
 
 
-class MonitorFailedError(Exception):
+class MonitorFailedError(MendError):
     """A monitor of somebody's has raised an error: what it watches for would go unnoticed."""
 
     def __init__(self, issue: str, error: Exception) -> None:
