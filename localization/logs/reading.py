@@ -22,10 +22,13 @@ _LINES_LOOKED_AT = 1000
 _CARMEN = ("FLASER", "RLASER", "ROBOTLASER1", "ODOM", "PARAM", "NEFF", "SYNC", "TRUEPOS")
 
 
-def read_log(path: Path, choice: BagChoice | None = None) -> RecordedDrive:
-    """The drive of a file; `choice` counts for a bag alone. Raises `WrongInputError`, `OSError`."""
-    if is_bag(path):
-        return read_bag(path, choice)
+def read_drive(path: Path, choice: BagChoice | None = None) -> RecordedDrive:
+    """The drive of a bag or a log; `choice` counts for a bag. Raises `WrongInputError`, `OSError`."""
+    return read_bag(path, choice) if is_bag(path) else read_log(path)
+
+
+def read_log(path: Path) -> Log:
+    """The log of a file. Raises `WrongInputError`, or `OSError`."""
     return FORMATS[_format_of(path)](path)
 
 
