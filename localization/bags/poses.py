@@ -33,9 +33,7 @@ def poses_of(
     poses = planar(told.transforms)[newest]
     since = relative(odometry.at(told.stamps)[newest], odometry.at(stamps))
     # At the very time of a message its pose counts as it is, to the bit.
-    poses = np.where(
-        (told.stamps[newest] == stamps)[:, None], poses, compose(poses, since)
-    )
+    poses = np.where((told.stamps[newest] == stamps)[:, None], poses, compose(poses, since))
     poses[~known] = np.nan
     return poses
 

@@ -70,8 +70,10 @@ class BeamModel:
         its = self._parameters
         expected = self._expected(pose, beams)
         deviation = (beams.ranges - expected) / its.hit_deviation_m
-        density = its.hit_share * np.exp(-0.5 * deviation**2) / (
-            its.hit_deviation_m * np.sqrt(2.0 * np.pi)
+        density = (
+            its.hit_share
+            * np.exp(-0.5 * deviation**2)
+            / (its.hit_deviation_m * np.sqrt(2.0 * np.pi))
         )
         decay = its.short_decay_per_m
         before = its.short_share * decay * np.exp(-decay * beams.ranges)

@@ -72,12 +72,22 @@ class Judge:
 
     def judgement(self) -> Judgement:
         """What is to be said of the steps so far."""
+        stretches = self._stretches.all()
+        # What was still open then may have become clear since.
+        standings = list(self._standings)
+        for each in stretches:
+            first = each.since.step - self._first_step
+            last = len(standings)
+            if each.until is not None:
+                last = each.until.step - self._first_step
+            standings[first:last] = [each.standing] * (last - first)
         return Judgement(
-            self._stretches.all(),
-            tuple(self._standings),
+            stretches,
+            tuple(standings),
             np.array([each.ours for each in self._moments]).reshape(-1, 3),
             np.array([each.theirs for each in self._moments]).reshape(-1, 3),
             tuple(each.along_m for each in self._moments),
+            tuple(each.time_s for each in self._moments),
             tuple(self._corrected),
             self._first_step,
         )
@@ -91,7 +101,9 @@ class Judge:
         )
         if weighed:
             self._unweighed[:] = 0.0
-        moment = Moment(self._first_step + len(self._moments), step.scan.time_s, along_m, estimate.pose, theirs)
+        moment = Moment(
+            self._first_step + len(self._moments), step.scan.time_s, along_m, estimate.pose, theirs
+        )
         return Past(moment, step.odometry, step.scan, self._model.beams_of(step.scan), weighed)
 
     def _standing(self, past: Past, estimate: Estimate) -> Standing:

@@ -63,6 +63,7 @@ class Judgement:
     ours: Poses
     theirs: Poses
     along_m: tuple[float, ...]
+    times_s: tuple[float, ...]
     ours_corrected: tuple[int, ...]
     first_step: int = 0
     """Steps before it, at which the other had told no pose yet, are not judged."""
@@ -71,3 +72,17 @@ class Judgement:
     def lost(self) -> tuple[Stretch, ...]:
         """Where the other localizer was lost."""
         return tuple(each for each in self.stretches if each.standing is Standing.LOST)
+
+    @property
+    def begins_s(self) -> float:
+        """The time of the first step that was judged."""
+        return self.times_s[0]
+
+    def counts(self, standing: Standing) -> int:
+        """At how many steps it stood like that."""
+        return self.standings.count(standing)
+
+    def metres_of(self, standing: Standing) -> float:
+        """On how much of the way it stood like that."""
+        steps = zip(self.standings[1:], self.along_m, self.along_m[1:], strict=False)
+        return sum(now - before for stood, before, now in steps if stood is standing)

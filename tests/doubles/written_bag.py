@@ -231,9 +231,7 @@ def messages_of(log: Log, messages: BagMessages, *, by_frames: bool = False) -> 
     stamps = stamps_of(log)
     mount = log.steps[0].scan.sensor_offset
     sent = [
-        messages.transform(
-            stamps[0] - 10**9, "base_link", "laser", mount.tolist(), static=True
-        )
+        messages.transform(stamps[0] - 10**9, "base_link", "laser", mount.tolist(), static=True)
     ]
     for stamp, step, place in zip(stamps, log.steps, odometry_of(log), strict=True):
         if by_frames:
