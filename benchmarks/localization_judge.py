@@ -18,6 +18,7 @@ Of drawn numbers (`--seed`) depends where MCL is led astray.
 import argparse
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -205,9 +206,8 @@ def main() -> None:
         vector_map = read_vector_map(given.data / "log_maps" / f"{name}.vectormap.txt")
         for way in given.way or WAYS:
             judged, poses = led_astray(log, vector_map, way, given.seed)
-            judgement = judge_drive(
-                judged, poses, vector_map, lambda: METHODS[given.method](vector_map, given.seed)
-            )
+            make = partial(METHODS[given.method], vector_map, given.seed)
+            judgement = judge_drive(judged, poses, vector_map, make)
             print(f"{name:18s} {way:10s} {score.add(judged, poses, judgement)}", flush=True)
     onsets = np.abs(score.onsets_m or [0.0])
     print(

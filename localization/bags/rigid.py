@@ -43,12 +43,13 @@ def chained(first: Rigid, second: Rigid) -> Rigid:
         axis=-1,
     )
     moved = first[..., :3] + np.einsum("...ij,...j->...i", rotations(first), second[..., :3])
-    return np.concatenate((moved, turned), axis=-1)
+    whole: Rigid = np.concatenate((moved, turned), axis=-1)
+    return whole
 
 
 def inverted(transforms: Rigid) -> Rigid:
     """The ways back."""
-    back = transforms * np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
+    back: Rigid = transforms * np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
     back[..., :3] = -np.einsum("...ij,...j->...i", rotations(back), transforms[..., :3])
     return back
 

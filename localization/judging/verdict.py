@@ -54,8 +54,8 @@ class Stretch:
 class Judgement:
     """A judged drive.
 
-    `standings` has one for each step that was judged; `ours_corrected` are the steps at which the scans spoke for
-    the other localizer against our track, which was then set to it.
+    `standings` has one for each step that was judged; `ours_corrected` are the steps at which the
+    scans spoke for the other localizer against our track, which was then set to it.
     """
 
     stretches: tuple[Stretch, ...]

@@ -23,7 +23,7 @@ _CARMEN = ("FLASER", "RLASER", "ROBOTLASER1", "ODOM", "PARAM", "NEFF", "SYNC", "
 
 
 def read_drive(path: Path, choice: BagChoice | None = None) -> RecordedDrive:
-    """The drive of a bag or a log; `choice` counts for a bag. Raises `WrongInputError`, `OSError`."""
+    """The drive of a bag, as `choice` has it, or of a log. Raises `WrongInputError`, `OSError`."""
     return read_bag(path, choice) if is_bag(path) else read_log(path)
 
 

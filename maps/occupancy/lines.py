@@ -40,7 +40,8 @@ def lines_of(grid: OccupancyGrid, settings: LineSettings | None = None) -> Vecto
     its = settings or LineSettings()
     mask = grid.occupied.astype(np.uint8)
     contours, _ = cv2.findContours(mask, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)
-    found = [part for contour in contours for part in _parts(contour.reshape(-1, 2), its)]
+    walks = [np.asarray(each, dtype=np.int32).reshape(-1, 2) for each in contours]
+    found = [part for walk in walks for part in _parts(walk, its)]
     rows = np.array([_fitted(part) for part in found]).reshape(-1, 4)
     merged = _merged(rows, its)
     long_enough = _lengths(merged) >= its.shortest_cells
@@ -52,8 +53,8 @@ def _parts(contour: NDArray[np.int32], its: LineSettings) -> Iterator[Matrix]:
     """The cells of a closed contour between its corners."""
     if len(contour) < its.shortest_cells:
         return
-    bends = cv2.approxPolyDP(contour.reshape(-1, 1, 2), its.bend_cells, True).reshape(-1, 2)
-    corners = _numbers(contour, bends)
+    bends = cv2.approxPolyDP(contour.reshape(-1, 1, 2), its.bend_cells, True)
+    corners = _numbers(contour, np.asarray(bends, dtype=np.int32).reshape(-1, 2))
     for first, last in zip(corners, [*corners[1:], corners[0] + len(contour)], strict=True):
         if last - first >= its.shortest_cells:
             yield contour[np.arange(first, last + 1) % len(contour)].astype(np.float64)
@@ -114,11 +115,12 @@ def _on_line(
         taken |= touching
         first = min(first, float(reach[taken, 0].min()))
         last = max(last, float(reach[taken, 1].max()))
-    return others[taken]
+    group: NDArray[np.int64] = others[taken]
+    return group
 
 
 def _mean(rows: Matrix) -> Matrix:
-    """One segment for several on a line: each counts by its length, as if it had that many cells."""
+    """One segment for several on a line, each counting by its length."""
     lengths = _lengths(rows)
     spans = rows[:, 2:] - rows[:, :2]
     middles = (rows[:, :2] + rows[:, 2:]) / 2.0

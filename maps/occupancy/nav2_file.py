@@ -74,21 +74,25 @@ def _read(path: Path) -> _MapFile:
     return read
 
 
-def _read_picture(path: Path) -> NDArray[np.generic]:
+def _read_picture(path: Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
     data = np.fromfile(path, dtype=np.uint8)
-    picture = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if len(data) else None
-    if picture is None:
+    try:
+        picture = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if len(data) else None
+    except cv2.error:
+        # What is damaged, or larger than OpenCV reads.
+        picture = None
+    if picture is None or picture.dtype not in (np.uint8, np.uint16):
         raise WrongInputError(f"{path}: not a picture that can be read (PGM or PNG)")
     if picture.shape[0] * picture.shape[1] > MAX_CELLS:
         raise WrongInputError(f"{path}: larger than {MAX_CELLS // 10**6} million cells")
-    return np.asarray(picture)
+    return picture
 
 
 def _judged(
-    picture: NDArray[np.generic], its: _MapFile
+    picture: NDArray[np.uint8] | NDArray[np.uint16], its: _MapFile
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Which cells are occupied and which are free."""
-    whole = float(np.iinfo(picture.dtype).max) if picture.dtype.kind == "u" else 1.0
+    whole = float(np.iinfo(picture.dtype).max)
     values = picture.astype(np.float32) * (_OPAQUE / whole)
     known = np.ones(values.shape[:2], dtype=bool)
     if values.ndim == 3 and values.shape[2] in (2, 4):
