@@ -99,10 +99,3 @@ class BeamModel:
             self._parameters.max_range_m,
         )
         return ranges
-
-
-def somewhere(vector_map: VectorMap, count: int, seed: int = 1) -> Poses:
-    """Poses (n, 3) drawn evenly over a map's bounds: where a robot may be that is nowhere known."""
-    x_min, y_min, x_max, y_max = vector_map.bounds
-    low, high = (x_min, y_min, -np.pi), (x_max, y_max, np.pi)
-    return np.random.default_rng(seed).uniform(low, high, (count, 3))

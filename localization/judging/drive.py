@@ -13,6 +13,9 @@ from mend.localization.logs.log import RecordedDrive
 from mend.localization.pose import Poses
 from mend.maps.vector_map import VectorMap
 
+_ELSEWHERE = 64
+"""Poses by which "the robot is somewhere else" is weighed."""
+
 
 def judge_drive(
     drive: RecordedDrive,
@@ -33,7 +36,7 @@ def judge_drive(
     first = 0 if start is not None else int(known[0])
     localizer = make()
     localizer.reset(theirs[first] if start is None else start)
-    judge = Judge(vector_map, make, first)
+    judge = Judge(vector_map, make, _elsewhere(theirs[known]), first)
     for number, step in enumerate(drive.steps):
         if number < first:
             continue
@@ -46,3 +49,15 @@ def judge_drive(
         if (correction := judge.correction()) is not None:
             localizer.reset(correction)
     return judge.judgement()
+
+
+def _elsewhere(told: Poses) -> Poses:
+    """Where a robot may be: along the way that was told, whichever way it faces there.
+
+    Places drawn from the whole map would lie outside of its walls too, and there no wall is ever
+    seen through: what a right pose has against it.
+    """
+    spread = np.linspace(0, len(told) - 1, _ELSEWHERE).round().astype(np.int64)
+    poses = told[spread].copy()
+    poses[:, 2] = np.random.default_rng(1).uniform(-np.pi, np.pi, _ELSEWHERE)
+    return poses

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mend.localization.evaluation import LOST_M, LOST_RAD
-from mend.localization.judging.beam_model import BeamModel, Beams, somewhere
+from mend.localization.judging.beam_model import BeamModel, Beams
 from mend.localization.judging.contest import Contest, Hypothesis
 from mend.localization.judging.memory import MakeLocalizer, Memory, Past
 from mend.localization.judging.stretches import Stretches
@@ -23,8 +23,6 @@ from mend.maps.vector_map import VectorMap
 _WEIGHED_EVERY_M = 0.1
 _WEIGHED_EVERY_RAD = np.radians(5.0)
 """Scans from one place are weighed once: again and again they would say nothing new."""
-_SOMEWHERE = 64
-"""Poses by which "somewhere else" is weighed."""
 _AGAIN = 0.5
 """Two tracks agree again once they are within this share of what parted them."""
 
@@ -40,12 +38,17 @@ class _Run:
 class Judge:
     """Takes one step after the other; `judgement` is what is to be said of all so far."""
 
-    def __init__(self, vector_map: VectorMap, make: MakeLocalizer, first_step: int = 0) -> None:
-        """`make` makes a localizer like ours, to look back with."""
+    def __init__(
+        self, vector_map: VectorMap, make: MakeLocalizer, elsewhere: Poses, first_step: int = 0
+    ) -> None:
+        """`make` makes a localizer like ours, to look back with.
+
+        `elsewhere` are poses (n, 3) by which "the robot is somewhere else" is weighed.
+        """
         self._first_step = first_step
         self._make = make
         self._model = BeamModel(vector_map)
-        self._somewhere = somewhere(vector_map, _SOMEWHERE)
+        self._elsewhere = elsewhere
         self._memory = Memory()
         self._stretches = Stretches(self._model)
         self._moments: list[Moment] = []
@@ -176,7 +179,7 @@ class Judge:
         """What a scan says of the three hypotheses; two poses that agree are one of them."""
         theirs = self._model.log_likelihood(moment.theirs, beams)
         ours = self._model.log_likelihood(moment.ours, beams) if apart else -np.inf
-        elsewhere = np.array([self._model.log_likelihood(each, beams) for each in self._somewhere])
+        elsewhere = np.array([self._model.log_likelihood(each, beams) for each in self._elsewhere])
         most = elsewhere.max()
         neither = most + np.log(np.exp(elsewhere - most).mean())
         return np.array([ours, theirs, neither])

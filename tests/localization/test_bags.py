@@ -209,12 +209,12 @@ def test_scans_with_another_number_of_beams_are_left_out(tmp_path: Path) -> None
     ("change", "choice", "said"),
     [
         (
-            lambda m, sent: [each for each in sent if each.type != SCAN],
+            lambda _, sent: [each for each in sent if each.type != SCAN],
             ANOTHER,
             r"no sensor_msgs/LaserScan in it; it holds /amcl_pose \(geometry_msgs/PoseWith",
         ),
         (
-            lambda m, sent: [*sent, Sent("/rear", SCAN, 10**18, sent[2].message)],
+            lambda _, sent: [*sent, Sent("/rear", SCAN, 10**18, sent[2].message)],
             ANOTHER,
             r"several lasers, say which with --scan: /rear \(sensor_msgs/LaserScan, 1 messages\), "
             r"/scan",
@@ -225,28 +225,28 @@ def test_scans_with_another_number_of_beams_are_left_out(tmp_path: Path) -> None
             r"several odometries, say which with --odometry: /odom .*, /visual .*, or tf",
         ),
         (
-            lambda m, sent: [each for each in sent if each.topic != "/odom"],
+            lambda _, sent: [each for each in sent if each.topic != "/odom"],
             ANOTHER,
             r"neither nav_msgs/Odometry nor tf from 'odom' .* its tf has base_link -> laser",
         ),
         (
-            lambda m, sent: sent[1:],
+            lambda _, sent: sent[1:],
             ANOTHER,
             r"no tf tells where the laser 'laser' is on the robot 'base_link': give --base-frame, "
             r"or the laser's place with --laser-pose",
         ),
         (
-            lambda m, sent: sent,
+            lambda _, sent: sent,
             BagChoice(poses="/pose"),
             r"'/pose' is no topic with PoseStamped, .* in it; it holds",
         ),
         (
-            lambda m, sent: sent,
+            lambda _, sent: sent,
             BagChoice(poses="tf"),
             r"no tf tells where 'odom' is in 'map' \(--map-frame names another frame\)",
         ),
         (
-            lambda m, sent: sent,
+            lambda _, sent: sent,
             BagChoice(scan="/odom"),
             r"'/odom' is no topic with LaserScan messages",
         ),
