@@ -2,7 +2,7 @@
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import cv2
 import numpy as np
@@ -74,7 +74,7 @@ def _read(path: Path) -> _MapFile:
     return read
 
 
-def _read_picture(path: Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
+def _read_picture(path: Path) -> NDArray[Any]:
     data = np.fromfile(path, dtype=np.uint8)
     try:
         picture = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if len(data) else None
@@ -88,9 +88,7 @@ def _read_picture(path: Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
     return picture
 
 
-def _judged(
-    picture: NDArray[np.uint8] | NDArray[np.uint16], its: _MapFile
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _judged(picture: NDArray[Any], its: _MapFile) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Which cells are occupied and which are free."""
     whole = float(np.iinfo(picture.dtype).max)
     values = picture.astype(np.float32) * (_OPAQUE / whole)

@@ -1,5 +1,6 @@
 """Drives out of ROS bags: the same as the logs that they were written from, to the bit."""
 
+import tracemalloc
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -316,3 +317,24 @@ def test_a_text_that_is_called_a_bag_is_refused(tmp_path: Path) -> None:
     path.write_text("Dear diary")
     with pytest.raises(WrongInputError, match="no bag that can be read"):
         read_bag(path)
+
+
+@pytest.mark.slow(seconds=3)
+@pytest.mark.parametrize("kind", FORMATS)
+def test_a_bag_is_never_in_memory_as_a_whole(tmp_path: Path, kind: BagFormat) -> None:
+    log, messages = _log(), BagMessages(kind)
+    ranges = np.linspace(1.0, 5.0, 20_000, dtype=np.float32)
+    sent: list[Sent] = []
+    for number in range(400):
+        stamp = stamps_of(log)[0] + number * 10**8
+        sent.append(messages.odometry(stamp, [0.1 * number, 0.0, 0.0], child="laser"))
+        sent.append(messages.scan(stamp, log.steps[0], ranges=ranges))
+    path = messages.write(tmp_path / "long", sent)
+    del sent
+    tracemalloc.start()
+    try:
+        assert sum(1 for _ in read_bag(path).steps) == 400
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 400 * ranges.nbytes / 3
