@@ -1,6 +1,7 @@
 """A whole recorded drive judged: our localizer and another's poses side by side."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -41,8 +42,9 @@ def judge_drive(
         if number < first:
             continue
         # The start is where the first scan was seen.
-        motion = np.zeros(3) if number == first else step.odometry
-        estimate = localizer.update(motion, step.scan)
+        if number == first:
+            step = replace(step, odometry=np.zeros(3))
+        estimate = localizer.update(step.odometry, step.scan)
         if on_estimate is not None:
             on_estimate(number, estimate)
         judge.take(step, theirs[number], estimate)

@@ -29,10 +29,11 @@ _AGAIN = 0.5
 
 @dataclass(slots=True)
 class _Run:
-    """What has come together since the tracks last agreed."""
+    """What has come together since the tracks parted, or since ours is in doubt."""
 
     contest: Contest
     since: Moment
+    apart: bool
 
 
 class Judge:
@@ -114,29 +115,32 @@ class Judge:
         if not np.isfinite(moment.theirs).all():
             self._agree(moment)
             return Standing.UNKNOWN
-        apart = not self._agrees(moment)
+        apart = self._are_apart(moment)
         if not apart and not estimate.is_lost:
             self._agree(moment)
             return Standing.HOLDS
-        if self._run is None:
-            self._run = _Run(Contest(), moment)
+        run = self._run
+        if run is None or run.apart != apart:
+            run = self._run = _Run(Contest(), moment, apart)
+            if not apart:
+                self._stretches.end(moment)
         self._jumped |= self._jumps(past)
         if apart and self._jumped and not estimate.is_lost and not self._stretches.says_lost:
-            self._look_back()
+            run = self._run = self._looked_back()
         elif past.weighed:
-            self._run.contest.weigh(self._likelihoods(moment, past.beams, apart))
-        return self._decided(self._run, past, estimate.is_lost, apart)
+            run.contest.weigh(self._likelihoods(moment, past.beams, apart))
+        return self._decided(run, past, in_doubt=estimate.is_lost)
 
-    def _decided(self, run: _Run, past: Past, in_doubt: bool, apart: bool) -> Standing:
+    def _decided(self, run: _Run, past: Past, *, in_doubt: bool) -> Standing:
         match run.contest.winner():
-            case Hypothesis.OURS if apart and not in_doubt:
+            case Hypothesis.OURS if run.apart and not in_doubt:
                 self._stretches.go_on(Standing.LOST, run.since, past)
                 return Standing.LOST
             case Hypothesis.NEITHER:
                 self._stretches.go_on(Standing.NEITHER, run.since, past)
                 return Standing.NEITHER
             case Hypothesis.THEIRS:
-                if apart:
+                if run.apart:
                     self._to_correct = past.moment.theirs
                     self._corrected.append(past.moment.step)
                 self._agree(past.moment)
@@ -144,12 +148,12 @@ class Judge:
             case _:
                 return self._stretches.undecided(past)
 
-    def _agrees(self, moment: Moment) -> bool:
-        """Whether the tracks are together, by a narrower measure once they were apart."""
-        share = 1.0 if self._run is None else _AGAIN
+    def _are_apart(self, moment: Moment) -> bool:
+        """Whether the tracks are apart, by a narrower measure once they were."""
+        share = _AGAIN if self._run is not None and self._run.apart else 1.0
         away = relative(moment.ours, moment.theirs)
-        within_m, within_rad = share * LOST_M, share * LOST_RAD
-        return bool(np.hypot(away[0], away[1]) <= within_m and abs(away[2]) <= within_rad)
+        beyond_m, beyond_rad = share * LOST_M, share * LOST_RAD
+        return bool(np.hypot(away[0], away[1]) > beyond_m or abs(away[2]) > beyond_rad)
 
     def _agree(self, moment: Moment) -> None:
         self._run = None
@@ -164,16 +168,16 @@ class Judge:
         away = relative(foretold, past.moment.ours)
         return bool(np.hypot(away[0], away[1]) > LOST_M or abs(away[2]) > LOST_RAD)
 
-    def _look_back(self) -> None:
+    def _looked_back(self) -> _Run:
         """Weigh the last metres anew, as they are seen from where our track now is."""
         steps = self._memory.look_back(self._make, self._model)
-        run = _Run(Contest(), steps[0].moment)
+        run = _Run(Contest(), steps[0].moment, apart=True)
         for each in steps:
             if each.weighed and np.isfinite(each.moment.theirs).all():
                 run.contest.weigh(self._likelihoods(each.moment, each.beams, apart=True))
-        self._run = run
         self._jumped = False
         self._stretches.take_back(run.since)
+        return run
 
     def _likelihoods(self, moment: Moment, beams: Beams, apart: bool) -> np.ndarray:
         """What a scan says of the three hypotheses; two poses that agree are one of them."""

@@ -147,6 +147,15 @@ def test_while_ours_is_in_doubt_the_other_is_not_called_lost() -> None:
     assert judgement.lost == ()
 
 
+def test_less_than_lost_is_not_lost_however_long_ours_was_in_doubt() -> None:
+    way = _way()
+    theirs = compose(way, np.array([0.8, 0.0, 0.0]))
+    judgement = judge_drive(
+        _drive(way), theirs, HALL, lambda: Odometer(lambda at, pose: (pose, at < 40)), way[0]
+    )
+    assert judgement.lost == ()
+
+
 def test_where_the_scans_cannot_tell_it_stays_open() -> None:
     way = np.column_stack((STEP_M * np.arange(60), np.zeros(60), np.zeros(60)))
     theirs = _aside(way, 20, 60, (3.0, 0.0, 0.0))
