@@ -52,6 +52,7 @@ class Bag:
     def __init__(self, path: Path) -> None:
         """Raises `WrongInputError`, `OSError`, or `ModuleNotFoundError` without `rosbags`."""
         self.path = path
+        path.stat()  # What is not there says so in the system's words.
         if path.is_dir() and not (path / _METADATA).exists():
             raise WrongInputError(f"{path}: a ROS 2 bag's folder has a {_METADATA}, this has none")
         with _opened(path) as reader:

@@ -170,6 +170,8 @@ def _sweeps(bag: Bag, scans: Topic) -> _Sweeps:
         stamps.append(stamp_of(received.message.header, received))
         beams.append(_beams(received))
         frames[frame_name(received.message.header.frame_id)] += 1
+    if not stamps:
+        raise WrongInputError(f"{bag.path}: the scans that it lists on {scans.name} are missing")
     usual = Counter(each for each in beams if each).most_common(1)
     most = usual[0][0] if usual else -1
     (frame, _), *others = frames.most_common()

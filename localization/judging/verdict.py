@@ -83,6 +83,6 @@ class Judgement:
         return self.standings.count(standing)
 
     def metres_of(self, standing: Standing) -> float:
-        """On how much of the way it stood like that."""
-        steps = zip(self.standings[1:], self.along_m, self.along_m[1:], strict=False)
+        """On how much of the way it stood like that, from each step to the next."""
+        steps = zip(self.standings, self.along_m, self.along_m[1:], strict=False)
         return sum(now - before for stood, before, now in steps if stood is standing)

@@ -26,6 +26,17 @@ def checked_suffix(what: str, path: Path | None, suffixes: tuple[str, ...]) -> N
         raise CommandLineError(f"the {what}'s file has to end in {ends}, which '{path}' does not")
 
 
+def check_choice(log: Path, *chosen: str | None) -> None:
+    """Raises `CommandLineError` where something is chosen of a log that is no bag."""
+    from mend.localization.bags.bag import is_bag
+
+    if any(each is not None for each in chosen) and not is_bag(log):
+        raise CommandLineError(
+            f"{log}: only a ROS bag has topics and frames to choose, and poses to judge; this is "
+            "none (.bag, .db3, .mcap, or a folder)"
+        )
+
+
 def given_pose(option: str, text: str | None) -> "Poses | None":
     """The pose x,y,theta that an option gives. Raises `CommandLineError`."""
     import numpy as np

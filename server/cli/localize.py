@@ -11,6 +11,7 @@ import typer
 from mend.server.cli.drive_input import (
     LOG_HELP,
     MAP_HELP,
+    check_choice,
     checked_suffix,
     get_ready,
     given_pose,
@@ -93,7 +94,6 @@ def localize(
     # Imported only here: compiled code would make every other command wait.
     from rich.console import Console
 
-    from mend.localization.bags.bag import is_bag
     from mend.localization.bags.choice import BagChoice
     from mend.localization.logs.reading import read_drive
     from mend.localization.methods import METHODS
@@ -117,8 +117,7 @@ def localize(
         map_frame=map_frame,
         laser_pose=given_pose("--laser-pose", laser_pose),
     )
-    if not is_bag(log):
-        _check_no_bag(log, judged, reference, scan, odometry, base_frame, laser_pose)
+    check_choice(log, judged, reference, scan, odometry, base_frame, laser_pose)
     given = given_pose("--start", start)
     console = Console(stderr=True, highlight=False, soft_wrap=True)
     with told_plainly():
@@ -190,14 +189,6 @@ def _check_together(
         raise CommandLineError("--judge draws a picture (--plot, --report), but no animation")
     if judged is None and report is not None:
         raise CommandLineError("--report is about what --judge finds: say what is to be judged")
-
-
-def _check_no_bag(log: Path, *of_bags: str | None) -> None:
-    if any(each is not None for each in of_bags):
-        raise CommandLineError(
-            f"{log}: only a ROS bag has topics and frames to choose, and poses to judge; this is "
-            "none (.bag, .db3, .mcap, or a folder)"
-        )
 
 
 def _no_start(log: Path) -> str:

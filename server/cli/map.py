@@ -5,7 +5,14 @@ from typing import Annotated
 
 import typer
 
-from mend.server.cli.drive_input import LOG_HELP, checked_suffix, progress, read_floor, told_drive
+from mend.server.cli.drive_input import (
+    LOG_HELP,
+    check_choice,
+    checked_suffix,
+    progress,
+    read_floor,
+    told_drive,
+)
 from mend.server.cli.failures import CommandLineError, told_plainly
 
 app = typer.Typer(
@@ -55,6 +62,7 @@ def build(
 
     checked_suffix("map", output, (".txt", ".json"))
     checked_suffix("picture", plot, PICTURE_SUFFIXES)
+    check_choice(log, reference, scan, odometry)
     console = Console(stderr=True, highlight=False, soft_wrap=True)
     with told_plainly():
         read = read_drive(log, BagChoice(scan=scan, odometry=odometry, poses=reference))

@@ -120,6 +120,11 @@ def test_what_cannot_be_done_is_said(arguments: list[str], said: str) -> None:
         _run("localize", DRIVE, "--map", FLOOR, *arguments)
 
 
+def test_a_bag_that_is_not_there_is_said_plainly(tmp_path: Path) -> None:
+    with pytest.raises(CommandLineError, match=r"nowhere\.bag': No such file"):
+        _run("localize", tmp_path / "nowhere.bag", "--map", FLOOR)
+
+
 @pytest.mark.slow
 def test_a_map_is_built_of_a_bag(tmp_path: Path, bag: Path) -> None:
     built = tmp_path / "built.txt"
