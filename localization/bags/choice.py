@@ -58,7 +58,7 @@ def odometry_topic(bag: Bag, choice: BagChoice, frames: Frames) -> Topic | None:
         return None
     if choice.odometry is not None:
         return _named(bag, choice.odometry, there, "Odometry")
-    odometry = [each for each in there if each.name != choice.poses]
+    odometry = [each for each in there if not _is_called(each, choice.poses or "")]
     if len(odometry) == 1:
         return odometry[0]
     if odometry:
@@ -99,13 +99,17 @@ def pose_topic(bag: Bag, name: str) -> Topic:
 
 
 def _named(bag: Bag, name: str, there: list[Topic], kind: str) -> Topic:
-    plain = name.lstrip("/")
     for each in there:
-        if each.name.lstrip("/") == plain:
+        if _is_called(each, name):
             return each
     raise WrongInputError(
         f"{bag.path}: '{name}' is no topic with {kind} messages in it; it holds {bag.contents()}"
     )
+
+
+def _is_called(topic: Topic, name: str) -> bool:
+    """Whether a topic has a name, which may be written without the slash before it."""
+    return topic.name.lstrip("/") == name.lstrip("/")
 
 
 def _listed(topics: list[Topic]) -> str:

@@ -282,6 +282,14 @@ def test_a_topic_is_chosen_by_name_and_the_laser_put_in_place(tmp_path: Path) ->
     _same(_drive(tmp_path, two, choice), rounded(_log()))
 
 
+def test_an_odometry_that_is_to_be_judged_is_not_driven_by(tmp_path: Path) -> None:
+    def told(messages: BagMessages, sent: list[Sent]) -> list[Sent]:
+        places = zip(stamps_of(_log()), _log().references, strict=True)
+        return sent + [messages.odometry(at, pose, topic="/global") for at, pose in places]
+
+    _same(_drive(tmp_path, told, BagChoice(poses="global")), rounded(_log()))
+
+
 @pytest.mark.parametrize("kind", FORMATS)
 def test_an_empty_bag_is_refused(tmp_path: Path, kind: BagFormat) -> None:
     with pytest.raises(WrongInputError, match="the bag is empty"):
