@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mend.localization.localizer import Estimate, Localizer
-from mend.localization.logs.log import Log
+from mend.localization.logs.log import RecordedDrive
 from mend.localization.pose import Poses, wrap
 
 Matrix = NDArray[np.float64]
@@ -75,7 +75,7 @@ class Summary:
 
 def follow(
     localizer: Localizer,
-    log: Log,
+    log: RecordedDrive,
     *,
     intervene: bool = False,
     on_estimate: Callable[[int, Estimate], None] | None = None,
@@ -117,7 +117,7 @@ def is_off(pose: Poses, reference: Poses) -> bool:
     return bool(away > LOST_M or abs(wrap(pose[2] - reference[2])) > LOST_RAD)
 
 
-def summarize(trace: Trace, log: Log) -> Summary:
+def summarize(trace: Trace, log: RecordedDrive) -> Summary:
     """The figures of a drive."""
     known = np.isfinite(trace.references).all(axis=1)
     median_ms, p95_ms = 1e3 * np.percentile(trace.durations_s, (50, 95)) if len(log) else (0.0, 0.0)

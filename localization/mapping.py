@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mend.localization.logs.log import Log
+from mend.localization.logs.log import RecordedDrive
 from mend.localization.points import scan_points
 from mend.localization.pose import Poses, transform, turn
 from mend.maps.building_vector_map import build_vector_map
@@ -16,7 +16,9 @@ MAX_SCANS = 1500
 """More scans of one drive only repeat each other; some are left out evenly."""
 
 
-def map_of(log: Log, poses: Poses, on_scan: Callable[[], None] | None = None) -> VectorMap:
+def map_of(
+    log: RecordedDrive, poses: Poses, on_scan: Callable[[], None] | None = None
+) -> VectorMap:
     """The vector map that a log's scans give, seen from poses (n, 3) in the map's frame."""
     every = -(-len(log) // MAX_SCANS)
     points, normals = [np.empty((0, 2))], [np.empty((0, 2))]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from mend.localization.logs.log import Log
+from mend.localization.logs.log import RecordedDrive
 from mend.localization.particles.motion import MotionNoise
 from mend.localization.points import scan_points
 from mend.localization.pose import Poses, compose, relative, transform, turn, wrap_angle
@@ -29,7 +29,7 @@ _TRUST = 0.3
 """Weight of a matched point, since neighbouring points err together."""
 
 
-def matched_poses(log: Log, on_scan: Callable[[], None] | None = None) -> Poses:
+def matched_poses(log: RecordedDrive, on_scan: Callable[[], None] | None = None) -> Poses:
     """The poses (n, 3) of a log's scans in the frame of the first; drift is not closed in loops."""
     matching = _Matching()
     poses: list[Poses] = []

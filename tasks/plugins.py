@@ -7,7 +7,13 @@ from typing import Any
 
 from mend.errors import UnavailableError
 
-_OF_EXTRAS = {"cv2": "OpenCV", "numba": "Numba", "ortools": "OR-Tools", "scipy": "SciPy"}
+_OF_EXTRAS = {
+    "cv2": "OpenCV",
+    "numba": "Numba",
+    "ortools": "OR-Tools",
+    "rosbags": "rosbags",
+    "scipy": "SciPy",
+}
 """What only extras of Mend's own distribution bring: as it is imported, and as it is called."""
 _DISTRIBUTION = "mend-robots"
 

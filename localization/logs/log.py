@@ -1,8 +1,9 @@
 """A recorded drive: motions, scans, and reference poses where somebody knows them."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -17,6 +18,39 @@ class LogStep:
     odometry: Poses
     scan: Scan
     reference: Poses | None = None
+
+
+class RecordedDrive(Protocol):
+    """What can be followed step by step, whether it is in memory or read as it is walked."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def steps(self) -> Iterable[LogStep]:
+        """The steps in their order. Raises `WrongInputError` where they cannot be read."""
+        ...
+
+    @property
+    def skipped(self) -> int:
+        """How many scans could not be used."""
+        ...
+
+    @property
+    def start(self) -> Poses | None:
+        """The first reference pose."""
+        ...
+
+    @property
+    def references(self) -> Poses:
+        """The reference pose of each step, NaN where there is none."""
+        ...
+
+    def __len__(self) -> int: ...
+
+    def path_m(self) -> float:
+        """How far the robot drove."""
+        ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,12 +1,16 @@
 """What pictures are drawn on: pixels (OpenCV) or SVG; all coordinates are pixels."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from html import escape
+from pathlib import Path
 from typing import Protocol
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.errors import UnavailableError
 from mend.localization.pictures.colors import PAPER, TEXT, Color
 
 Matrix = NDArray[np.float64]
@@ -108,6 +112,25 @@ class Svg:
             f'<path d="{path}" fill="none" stroke="rgb{color}" stroke-width="{width:g}" '
             'stroke-linecap="round"/>'
         )
+
+
+@contextmanager
+def drawn(path: Path, width_px: int, height_px: int) -> Iterator[Canvas]:
+    """A canvas that is written as `.png` or `.svg` once something is drawn on it.
+
+    Raises `UnavailableError`, or `OSError`.
+    """
+    if path.suffix == ".svg":
+        svg = Svg(width_px, height_px)
+        yield svg
+        path.write_text(svg.document(), encoding="utf-8")
+        return
+    raster = Raster(width_px, height_px)
+    yield raster
+    encoded, data = cv2.imencode(".png", raster.image)
+    if not encoded:
+        raise UnavailableError(f"'{path}' could not be written as a picture")
+    path.write_bytes(data.tobytes())
 
 
 def _fixed(points: Matrix) -> NDArray[np.int32]:

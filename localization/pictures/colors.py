@@ -10,6 +10,10 @@ TRAJECTORY: Color = (120, 120, 120)
 ELLIPSE: Color = (175, 175, 175)
 REFERENCE: Color = (200, 30, 30)
 TEXT: Color = (30, 30, 30)
+CELLS: Color = (205, 205, 205)
+JUDGED: Color = (20, 140, 90)
+LOST: Color = (220, 40, 30)
+NEITHER: Color = (235, 160, 20)
 POINTS: dict[PointClass, Color] = {
     PointClass.LTF: (255, 140, 0),
     PointClass.STF: (140, 30, 170),

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from mend.errors import UnavailableError
 from mend.localization.localizer import Estimate
-from mend.localization.pictures.canvas import Canvas, Image, Raster, Svg
+from mend.localization.pictures.canvas import Canvas, Image, Raster, drawn
 from mend.localization.pictures.colors import ELLIPSE, MAP, POINTS, REFERENCE, TRAJECTORY
-from mend.localization.pictures.view import MapView, view_of
+from mend.localization.pictures.view import MapView, ends_of, view_of
 from mend.localization.pose import Poses, transform
 from mend.maps.vector_map import VectorMap
 
@@ -68,14 +68,8 @@ class Drive:
     def save_picture(self, path: Path) -> None:
         """Write a `.png` or `.svg`. Raises `UnavailableError`, or `OSError`."""
         view = self._view(_PICTURE_PX)
-        if path.suffix == ".svg":
-            svg = Svg(view.width_px, view.height_px)
-            self._draw_whole(svg, view)
-            path.write_text(svg.document(), encoding="utf-8")
-            return
-        raster = Raster(view.width_px, view.height_px)
-        self._draw_whole(raster, view)
-        _write_png(raster.image, path)
+        with drawn(path, view.width_px, view.height_px) as canvas:
+            self._draw_whole(canvas, view)
 
     def save_animation(self, path: Path) -> None:
         """Write an `.mp4` or `.gif`. Raises `UnavailableError`."""
@@ -97,7 +91,7 @@ class Drive:
     def _draw_whole(self, canvas: Canvas, view: MapView) -> None:
         for moment in self.moments:
             _draw_points(canvas, view, moment, 0.8)
-        canvas.segments(view.pixels(_ends(self.vector_map)).reshape(-1, 4), MAP)
+        canvas.segments(view.pixels(ends_of(self.vector_map)).reshape(-1, 4), MAP)
         self._draw_references(canvas, view)
         canvas.path(view.pixels(np.array(self.poses)[:, :2]), TRAJECTORY, 2.0)
         for moment in self.moments[::_ELLIPSE_EVERY]:
@@ -112,7 +106,7 @@ class Drive:
     def _frames(self, most: int) -> list[Image]:
         view = self._view(_ANIMATION_PX)
         ground = Raster(view.width_px, view.height_px)
-        ground.segments(view.pixels(_ends(self.vector_map)).reshape(-1, 4), MAP)
+        ground.segments(view.pixels(ends_of(self.vector_map)).reshape(-1, 4), MAP)
         _draw_legend(ground, self.title)
         every = max(1, -(-len(self.moments) // most))
         shown = self.moments[::every]
@@ -131,19 +125,11 @@ class Drive:
 def save_map_picture(vector_map: VectorMap, path: Path) -> None:
     """Draw a vector map as `.png` or `.svg`. Raises `UnavailableError`, or `OSError`."""
     view = view_of(vector_map.segments.reshape(-1, 2), _PICTURE_PX)
-    rows = view.pixels(_ends(vector_map)).reshape(-1, 4)
+    rows = view.pixels(ends_of(vector_map)).reshape(-1, 4)
     title = f"{vector_map.name}: {len(vector_map)} segments, {vector_map.lengths.sum():.0f} m"
-    canvas = (Svg if path.suffix == ".svg" else Raster)(view.width_px, view.height_px)
-    canvas.segments(rows, MAP)
-    canvas.text(8, 18, title)
-    if isinstance(canvas, Svg):
-        path.write_text(canvas.document(), encoding="utf-8")
-    else:
-        _write_png(canvas.image, path)
-
-
-def _ends(vector_map: VectorMap) -> Matrix:
-    return vector_map.segments.reshape(-1, 2, 2)
+    with drawn(path, view.width_px, view.height_px) as canvas:
+        canvas.segments(rows, MAP)
+        canvas.text(8, 18, title)
 
 
 def _draw_points(canvas: Canvas, view: MapView, moment: DriveFrame, radius: float) -> None:
@@ -177,13 +163,6 @@ def _robot(pose: Poses) -> Matrix:
     """A triangle of half a metre that points ahead."""
     corners = np.array([[0.35, 0.0], [-0.2, 0.2], [-0.2, -0.2], [0.35, 0.0]])
     return transform(pose, corners)
-
-
-def _write_png(image: Image, path: Path) -> None:
-    encoded, data = cv2.imencode(".png", image)
-    if not encoded:
-        raise UnavailableError(f"'{path}' could not be written as a picture")
-    path.write_bytes(data.tobytes())
 
 
 def _write_video(frames: list[Image], path: Path) -> bool:

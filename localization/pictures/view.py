@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.maps.vector_map import VectorMap
+
 Matrix = NDArray[np.float64]
 
 _MARGIN_M = 1.0
@@ -47,3 +49,8 @@ def view_of(places: Matrix, longest_px: int) -> MapView:
         max(int(width), 480) // 2 * 2,
         (int(height) + LEGEND_PX) // 2 * 2,
     )
+
+
+def ends_of(vector_map: VectorMap) -> Matrix:
+    """The ends (n, 2, 2) of a map's segments."""
+    return vector_map.segments.reshape(-1, 2, 2)

@@ -25,7 +25,7 @@ SUMMARIES = {
     "train-colors": "Learn the colours of objects.",
     "access": "Say who may do what, and see who did what.",
     "building": "Import, make up and draw buildings, and run robots there.",
-    "map": "Build and clean up vector maps.",
+    "map": "Build, extract and clean up vector maps.",
     "journal": "Check, prune, back up and restore a journal.",
     "scene": "Make up scenes.",
     "request": "Ask a building's robots for something.",

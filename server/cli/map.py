@@ -1,15 +1,25 @@
-"""`mend map`: build vector maps from recorded drives, and clean them up."""
+"""`mend map`: build vector maps from recorded drives, extract them from pictures, clean them up."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from mend.server.cli.drive_input import (
+    LOG_HELP,
+    check_choice,
+    checked_suffix,
+    progress,
+    read_floor,
+    told_drive,
+)
 from mend.server.cli.failures import CommandLineError, told_plainly
-from mend.server.cli.localize import checked_suffix, progress
 
 app = typer.Typer(
-    name="map", help="Build and clean up vector maps.", no_args_is_help=True, rich_markup_mode=None
+    name="map",
+    help="Build, extract and clean up vector maps.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
 )
 
 OutputFile = Annotated[
@@ -20,9 +30,20 @@ PlotFile = Annotated[Path | None, typer.Option(help="Draw the map, as .png or .s
 
 @app.command("build", short_help="Build a vector map from a recorded drive.")
 def build(
-    log: Annotated[Path, typer.Argument(metavar="LOG", help="A CARMEN, Wean Hall or CSV log.")],
+    log: Annotated[Path, typer.Argument(metavar="LOG", help=LOG_HELP)],
     output: OutputFile,
     plot: PlotFile = None,
+    reference: Annotated[
+        str | None,
+        typer.Option(metavar="TOPIC", help="A bag's poses (or tf) to take for references."),
+    ] = None,
+    scan: Annotated[
+        str | None, typer.Option(metavar="TOPIC", help="The laser, where a bag has several.")
+    ] = None,
+    odometry: Annotated[
+        str | None,
+        typer.Option(metavar="TOPIC", help="The odometry, where a bag has several; or tf."),
+    ] = None,
 ) -> None:
     """Build a vector map from a recorded drive.
 
@@ -32,7 +53,8 @@ def build(
     import numpy as np
     from rich.console import Console
 
-    from mend.localization.logs.reading import read_log
+    from mend.localization.bags.choice import BagChoice
+    from mend.localization.logs.reading import read_drive
     from mend.localization.mapping import map_of
     from mend.localization.pictures.drive import PICTURE_SUFFIXES, save_map_picture
     from mend.localization.scan_matching import matched_poses
@@ -40,9 +62,11 @@ def build(
 
     checked_suffix("map", output, (".txt", ".json"))
     checked_suffix("picture", plot, PICTURE_SUFFIXES)
+    check_choice(log, reference, scan, odometry)
     console = Console(stderr=True, highlight=False, soft_wrap=True)
     with told_plainly():
-        read = read_log(log)
+        read = read_drive(log, BagChoice(scan=scan, odometry=odometry, poses=reference))
+        told_drive(read, console)
         poses = read.references
         if not np.isfinite(poses).all():
             console.print(f"{log}: not every scan has a reference pose; matching scan to scan")
@@ -57,6 +81,28 @@ def build(
             plot.parent.mkdir(parents=True, exist_ok=True)
             save_map_picture(vector_map, plot)
     typer.echo(f"{output}: {len(vector_map)} segments, {vector_map.lengths.sum():.1f} m of walls")
+
+
+@app.command("lines", short_help="Extract the lines of a Nav2 map.")
+def lines(
+    map_file: Annotated[Path, typer.Argument(metavar="MAP", help="A Nav2 map.yaml.")],
+    output: OutputFile,
+    plot: PlotFile = None,
+) -> None:
+    """Extract the walls of an occupancy map as lines; the picture shows them over its cells."""
+    from rich.console import Console
+
+    from mend.localization.pictures.drive import PICTURE_SUFFIXES
+    from mend.maps.vector_map_file import write_vector_map
+
+    checked_suffix("map", output, (".txt", ".json"))
+    checked_suffix("picture", plot, PICTURE_SUFFIXES)
+    console = Console(stderr=True, highlight=False, soft_wrap=True)
+    with told_plainly():
+        extracted = read_floor(map_file, plot, console)
+        output.parent.mkdir(parents=True, exist_ok=True)
+        write_vector_map(extracted, output)
+    typer.echo(f"{output}: {len(extracted)} segments, {extracted.lengths.sum():.1f} m of walls")
 
 
 @app.command("clean", short_help="Clean a vector map up.")

@@ -15,6 +15,7 @@ OF_EXTRAS = (
     "pinocchio",
     "pocketsphinx",
     "pybullet",
+    "rosbags",
     "ruckig",
     "scipy",
     "sounddevice",

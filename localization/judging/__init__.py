@@ -1,0 +1,1 @@
+"""Where and since when another localizer was lost, told by our own track and by the scans."""

@@ -1,0 +1,101 @@
+"""How well a pose explains a scan: the beam model of range finders.
+
+Thrun, Burgard and Fox, Probabilistic Robotics (2005), section 6.3: a range is a hit on the map's
+first wall, something unmapped before it, or random. What did not return says nothing here.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mend.localization.pose import Poses, compose
+from mend.localization.scan import Scan
+from mend.maps.ray_cast import cast
+from mend.maps.vector_map import VectorMap
+
+Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class BeamModelParameters:
+    """Weights as for a floor on which half of what is seen is on no map."""
+
+    hit_share: float = 0.6
+    short_share: float = 0.25
+    random_share: float = 0.15
+    hit_deviation_m: float = 0.2
+    """Laser noise, the map's error, and a track that is right to some ten centimetres."""
+    short_decay_per_m: float = 0.5
+    """Of the exponential density of what stands before a wall."""
+    max_range_m: float = 30.0
+    beams: int = 60
+    """Returns used of a scan, evenly spread: neighbours say nearly the same."""
+    trust: float = 0.35
+    """Exponent of a scan's likelihood, since its returns err together; both as Mend's MCL has."""
+    matched_within_m: float = 0.3
+    """A return this near the expected range is put down to the map."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Beams:
+    """What is kept of a scan to weigh poses with: ranges (metres) and bearings (radians)."""
+
+    ranges: Matrix
+    bearings: Matrix
+    """In the robot's frame."""
+    mount: Poses
+
+
+class BeamModel:
+    """Log-likelihoods of scans at poses on one map."""
+
+    def __init__(
+        self, vector_map: VectorMap, parameters: BeamModelParameters | None = None
+    ) -> None:
+        self._segments = vector_map.segments
+        self._parameters = parameters or BeamModelParameters()
+
+    def beams_of(self, scan: Scan) -> Beams:
+        """The returns that are used of a scan."""
+        its = self._parameters
+        returned = np.flatnonzero(scan.returns(0.0, its.max_range_m))
+        chosen = np.linspace(0, len(returned) - 1, min(its.beams, len(returned)))
+        used = returned[chosen.round().astype(np.int64)]
+        bearings = scan.angles[used] + scan.sensor_offset[2]
+        return Beams(scan.ranges[used], bearings, scan.sensor_offset)
+
+    def log_likelihood(self, pose: Poses, beams: Beams) -> float:
+        """Of a scan at one pose, tempered by the trust in a scan."""
+        its = self._parameters
+        expected = self._expected(pose, beams)
+        deviation = (beams.ranges - expected) / its.hit_deviation_m
+        density = (
+            its.hit_share
+            * np.exp(-0.5 * deviation**2)
+            / (its.hit_deviation_m * np.sqrt(2.0 * np.pi))
+        )
+        decay = its.short_decay_per_m
+        before = its.short_share * decay * np.exp(-decay * beams.ranges)
+        before /= np.maximum(1.0 - np.exp(-decay * expected), 1e-6)
+        density += np.where(beams.ranges < expected, before, 0.0)
+        density += its.random_share / its.max_range_m
+        return its.trust * float(np.log(density).sum())
+
+    def matched_share(self, pose: Poses, beams: Beams) -> float:
+        """The share of the returns that the map foretells from a pose; 0 where there is none."""
+        if not len(beams.ranges):
+            return 0.0
+        away = np.abs(beams.ranges - self._expected(pose, beams))
+        return float((away < self._parameters.matched_within_m).mean())
+
+    def _expected(self, pose: Poses, beams: Beams) -> Matrix:
+        x, y, _ = compose(pose, beams.mount)
+        ranges, _ = cast(
+            self._segments,
+            float(x),
+            float(y),
+            beams.bearings + pose[2],
+            self._parameters.max_range_m,
+        )
+        return ranges
