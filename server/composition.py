@@ -29,6 +29,7 @@ from mend.server.models import RobotModels
 from mend.server.off_loop import OffLoop
 from mend.server.poses.feed import PoseFeed
 from mend.server.poses.record import PoseRecords
+from mend.server.push.push import Push
 from mend.server.refusals import Refusals
 from mend.server.retention import prune_regularly
 from mend.server.robots.passes import OwnRobots
@@ -188,6 +189,14 @@ async def _open(
         refusals=refusals,
     )
     fleets = Fleets(sites, runtime, journal, poses, utc_now=lambda: datetime.now(UTC))
+    push = Push(
+        journal,
+        runtime.dialogues,
+        access,
+        settings,
+        settings.push_key_path if recover else None,
+        utc_now=lambda: datetime.now(UTC),
+    )
     speech = _speech(settings)
     app = create_app(
         runtime,
@@ -203,6 +212,7 @@ async def _open(
         poses=poses,
         access=access,
         deeds=deeds,
+        push=push,
         speech_abilities=speech,
         refusals=refusals,
         off_loop=off_loop,
@@ -220,6 +230,7 @@ async def _open(
             await runtime.recover()
             await fleets.recover()
             await deeds.recover(access.sessions)
+            await push.start()
         pruning = asyncio.create_task(
             prune_regularly(
                 journal.prune, poses.forget, settings.keep.keep(), await _pruning_time(journal)
@@ -241,6 +252,7 @@ async def _open(
             ending.push_async_callback(_stop_speech, speech, rendering)
             ending.callback(poses.shut)
             ending.push_async_callback(mail.close)
+            ending.push_async_callback(push.close)
             ending.push_async_callback(_cancel, watching)
             ending.push_async_callback(sites.close)
             ending.push_async_callback(runtime.close)
