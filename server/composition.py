@@ -30,6 +30,7 @@ from mend.server.off_loop import OffLoop
 from mend.server.poses.feed import PoseFeed
 from mend.server.poses.record import PoseRecords
 from mend.server.push.push import Push
+from mend.server.push.subscriptions import PushSubscriptions
 from mend.server.refusals import Refusals
 from mend.server.retention import prune_regularly
 from mend.server.robots.passes import OwnRobots
@@ -74,6 +75,7 @@ class Service:
     url: str
     public_url: str | None
     settings: Settings
+    devices: PushSubscriptions
 
     @property
     def robots_url(self) -> str:
@@ -241,7 +243,10 @@ async def _open(
         watching = asyncio.create_task(_watch_access(access, deeds, journal_changes=recover))
         serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
         await server.wait_until_started(serving)
-        yield Service(runtime, journal, registry, library, sites, fleets, url, public_url, settings)
+        yield Service(
+            runtime, journal, registry, library, sites, fleets, url, public_url, settings,
+            push.subscriptions,
+        )  # fmt: skip
     finally:
         # From the last to the first, each of them also where one before has failed.
         async with AsyncExitStack() as ending:

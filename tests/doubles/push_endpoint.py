@@ -106,7 +106,7 @@ def push_service() -> Iterator[PushService]:
     """Serve one on a free port."""
 
     class Handler(BaseHTTPRequestHandler):
-        def do_POST(self) -> None:  # noqa: N802 - the name that http.server calls
+        def do_POST(self) -> None:
             body = self.rfile.read(int(self.headers["content-length"]))
             headers = {name.lower(): value for name, value in self.headers.items()}
             self.send_response(service.take(Pushed(self.path, headers, body)))

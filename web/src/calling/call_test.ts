@@ -3,20 +3,11 @@ import { may } from "../state/access";
 import { besideRobot, helperName, pushOn, soundOn } from "../state/preferences";
 import { speechLacks, speechPhase } from "../speech/speech_state";
 import * as rest from "../wire/rest";
+import type { Finding } from "./findings";
 import { currentSubscription, deviceId, whyNoPush } from "./push";
 import { trialArrives } from "./registration";
 import { play } from "./sounds";
 import { tryToKeepAwake } from "./wake_lock";
-
-/** `unused`: it was not asked for here, and nothing is missing. */
-export type State = "well" | "bad" | "unused";
-
-export interface Finding {
-  what: string;
-  state: State;
-  /** What was found, and what to do where it is bad. */
-  words: string;
-}
 
 type Found = Omit<Finding, "what">;
 type Check = readonly [what: string, find: () => Promise<Found>];
@@ -47,23 +38,6 @@ export async function testCalling(tell: (finding: Finding) => void): Promise<Fin
     tell({ what, ...found });
   }
   return findings;
-}
-
-/** What it comes to, in a sentence or two. */
-export function verdict(findings: readonly Finding[]): Finding {
-  const is = (what: string) => findings.find((each) => each.what === what)?.state;
-  const open = is("Sound") === "well";
-  const closed = is("A push all the way") === "well";
-  if (is("Your turn") === "bad") return { what: "This device", state: "bad", words: "You are not called at all: see the first line." };
-  const beside = ["Screen stays on", "Listens and speaks"].some((what) => is(what) === "bad");
-  const words = [
-    open && closed && "This device calls you, whether this page is open or not.",
-    open && !closed && "This device calls you only as long as this page is open.",
-    !open && closed && "This device shows you that a robot asks, but this page makes no sound.",
-    !open && !closed && "This device does not call you.",
-    beside && "It cannot do all that is wanted of one beside a robot.",
-  ].filter(Boolean);
-  return { what: "This device", state: (open || closed) && !beside ? "well" : "bad", words: words.join(" ") };
 }
 
 async function turn(): Promise<Found> {

@@ -2,6 +2,7 @@
 import { helperName, pushOn } from "../state/preferences";
 import * as rest from "../wire/rest";
 import type { DeviceView } from "../wire/types";
+import { deviceName } from "./device_name";
 import { whyNoWorker, worker } from "./registration";
 
 /** Why this device cannot be called while the page is closed, as a sentence; null where it can. */
@@ -24,7 +25,7 @@ export async function callThisDevice(): Promise<DeviceView> {
   }
   const { available, key } = await rest.push(helperName.value);
   if (!available) throw new Error("This service pushes to nobody: its operators have switched that off.");
-  const device = await rest.addPushSubscription(await subscription(key), deviceName(), helperName.value);
+  const device = await rest.addPushSubscription(await subscription(key), deviceName(navigator.userAgent), helperName.value);
   pushOn.value = true;
   return device;
 }
@@ -71,14 +72,4 @@ export async function callThisDeviceStill(): Promise<void> {
 function keyOf(found: PushSubscription): string {
   const bytes = new Uint8Array(found.options.applicationServerKey ?? new ArrayBuffer(0));
   return btoa(String.fromCharCode(...bytes)).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
-}
-
-const SYSTEMS = ["iPhone", "iPad", "Android", "Windows", "Mac", "Linux"];
-const BROWSERS = ["Edg", "Firefox", "Chrome", "Safari"];
-
-/** What others tell this device by: its system and its browser. */
-export function deviceName(agent = navigator.userAgent): string {
-  const system = SYSTEMS.find((each) => agent.includes(each)) ?? "Device";
-  const browser = BROWSERS.find((each) => agent.includes(each));
-  return browser === undefined ? system : `${system}, ${browser === "Edg" ? "Edge" : browser}`;
 }

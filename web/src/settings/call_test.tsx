@@ -1,6 +1,7 @@
 // The button that tries whether this device will really call, and what it has found.
 import { useState } from "preact/hooks";
-import { type Finding, type State, testCalling, verdict } from "../calling/call_test";
+import { testCalling } from "../calling/call_test";
+import { type Finding, type State, verdict } from "../calling/findings";
 import "./call_test.css";
 
 const SIGNS: Readonly<Record<State, { path: string; name: string }>> = {

@@ -45,27 +45,27 @@ export function Calling() {
 function CallDevice() {
   const why = whyNoPush();
   const [mistake, setMistake] = useState("");
-  const [busy, setBusy] = useState(false);
-  const change = async (box: HTMLInputElement) => {
-    setBusy(true);
+  /** What is being done now; null for nothing. */
+  const [wanted, setWanted] = useState<boolean | null>(null);
+  const change = async (want: boolean) => {
+    setWanted(want);
     setMistake("");
     try {
-      await (box.checked ? callThisDevice() : callThisDeviceNoMore());
+      await (want ? callThisDevice() : callThisDeviceNoMore());
     } catch (error) {
       setMistake((error as Error).message);
     }
-    box.checked = pushOn.value;
-    setBusy(false);
+    setWanted(null);
   };
   return (
     <>
       <label class="choice">
         <input
           type="checkbox"
-          checked={pushOn.value}
-          disabled={busy || (why !== null && !pushOn.value)}
+          checked={wanted ?? pushOn.value}
+          disabled={wanted !== null || (why !== null && !pushOn.value)}
           aria-describedby="push-hint"
-          onChange={(event) => void change(event.currentTarget)}
+          onChange={(event) => void change(event.currentTarget.checked)}
         />
         Call this device also while this page is closed
       </label>
