@@ -114,6 +114,22 @@ async def test_the_trial_says_truthfully_whether_this_device_calls(
     await expect(page.get_by_text("The service does not know this device")).to_be_visible()
 
 
+async def test_a_device_beside_the_robot_stays_awake_and_listens_from_the_start(
+    stage: Stage,
+) -> None:
+    page = await stage.open_page("/settings")
+    held = "() => navigator.wakeLock.request = async () => (window.held = true, new EventTarget())"
+    await page.evaluate(held)
+    assert await page.evaluate("window.held") is None
+    await page.get_by_label("This device stands beside the robot").check()
+    await page.wait_for_function("() => window.held === true")
+    await page.get_by_role("link", name="Questions", exact=True).click()
+    await stage.runs.open(stage.run, "dropped")
+    await expect(page.get_by_role("button", name="Listen and speak")).to_have_attribute(
+        "aria-pressed", "true"
+    )
+
+
 async def test_the_page_can_be_installed(open_page: OpenPage) -> None:
     page = await open_page("/")
     session = await page.context.new_cdp_session(page)

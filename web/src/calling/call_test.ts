@@ -61,14 +61,14 @@ async function permission(): Promise<Found> {
     case "denied":
       return bad("Refused in this browser: allow notifications of this page in its site settings.");
     default:
-      return bad("Not asked for yet: switch calls to this device on above.");
+      return unused("Not asked for yet: that comes with switching calls to this device on above.");
   }
 }
 
 async function subscribed(): Promise<Found> {
   const why = whyNoPush();
   if (why !== null) return bad(why);
-  if (!pushOn.value) return bad("Switched off: switch calls to this device on above.");
+  if (!pushOn.value) return unused("Switched off above.");
   const found = await currentSubscription();
   const id = found === null ? null : await deviceId(found.endpoint);
   const devices = await rest.pushSubscriptions();
@@ -78,7 +78,7 @@ async function subscribed(): Promise<Found> {
 
 async function roundTrip(): Promise<Found> {
   const found = await currentSubscription();
-  if (found === null || !pushOn.value) return bad("Not tried, as this device is not called.");
+  if (found === null || !pushOn.value) return unused("Not tried, as this device is not called while the page is closed.");
   const nonce = crypto.randomUUID();
   const arrives = trialArrives(nonce);
   const begun = performance.now();
@@ -93,7 +93,8 @@ async function roundTrip(): Promise<Found> {
 
 async function vibration(): Promise<Found> {
   if (navigator.vibrate === undefined) return unused("This device or browser has none.");
-  return navigator.vibrate([200, 120, 200]) ? well("Asked for. Did you not feel it? Then it is off on this device.") : unused("The browser does not let this page use it.");
+  const asked = navigator.vibrate([200, 120, 200]);
+  return unused(asked ? "Asked for; whether this device has done it can only be felt." : "The browser does not let this page use it.");
 }
 
 async function screen(): Promise<Found> {

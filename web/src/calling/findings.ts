@@ -1,6 +1,6 @@
 // What a trial of the calls to a device has found, and what it comes to.
 
-/** `unused`: it was not asked for here, and nothing is missing. */
+/** `unused`: it was not asked for here, or cannot be known. */
 export type State = "well" | "bad" | "unused";
 
 export interface Finding {

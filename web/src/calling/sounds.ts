@@ -86,7 +86,8 @@ function audioContext(): AudioContext {
   return context;
 }
 
-// The first touch is what browsers wait for, whatever it is for.
-for (const kind of ["pointerdown", "keydown"]) {
+// The first touch is what browsers wait for, whatever it is for. Not its beginning: what says that nothing is heard
+// goes then, and would move from under the finger what is being touched.
+for (const kind of ["click", "keydown"]) {
   window.addEventListener(kind, () => context !== null && soundBlocked.value && void unlock(), { passive: true });
 }

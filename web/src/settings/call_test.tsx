@@ -7,7 +7,7 @@ import "./call_test.css";
 const SIGNS: Readonly<Record<State, { path: string; name: string }>> = {
   well: { path: "m5 10.5 3.5 3.5L15 7", name: "Works" },
   bad: { path: "M10 4.5v7M10 14.5v1", name: "Does not work" },
-  unused: { path: "M6 10h8", name: "Not used" },
+  unused: { path: "M6 10h8", name: "Not known" },
 };
 
 export function CallTest() {
