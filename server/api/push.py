@@ -6,7 +6,7 @@ from typing import Annotated
 from fastapi import APIRouter, Body, Path, Query
 from pydantic import BaseModel, ConfigDict, Field
 
-from mend.documents.spellings import SEEN_CHARACTERS
+from mend.documents.spellings import DEVICE, NONCE, SEEN_CHARACTERS
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
 from mend.server.api.services import HelperName, WithCaller, WithServices, helper_of
@@ -16,9 +16,7 @@ from mend.server.push.subscriptions import Device
 
 router = APIRouter(prefix="/api/push", tags=["push"], route_class=RepeatableRoute)
 
-DeviceId = Annotated[
-    str, Path(pattern=r"^[0-9a-f]{32}$", description="The id of a push subscription.")
-]
+DeviceId = Annotated[str, Path(pattern=DEVICE, description="The id of a push subscription.")]
 EXAMPLES = [
     {
         "endpoint": "https://fcm.googleapis.com/fcm/send/one-device",
@@ -84,7 +82,7 @@ class TrialRequest(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
-    nonce: Annotated[str, Field(min_length=1, max_length=64, pattern=r"^[A-Za-z0-9_-]+$")]
+    nonce: Annotated[str, Field(min_length=1, max_length=64, pattern=NONCE)]
 
 
 class TrialView(BaseModel):
