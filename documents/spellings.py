@@ -10,6 +10,8 @@ CAMERA = r"^[a-z][a-z0-9_]{0,31}$"
 PHRASE = r"^[a-z_]{1,32}$"
 SHA256 = r"^[0-9a-f]{64}$"
 SHORT_ID = r"^[0-9a-f]{8}$"
+DEVICE = r"^[0-9a-f]{32}$"
+NONCE = r"^[A-Za-z0-9_-]+$"
 CLOCK = r"^([01][0-9]|2[0-3]):[0-5][0-9]$"
 """A time of the day."""
 
@@ -23,5 +25,7 @@ SPELLINGS = {
     PHRASE: "must be 1 to 32 lower-case letters or '_'",
     SHA256: "must be 64 hexadecimal digits in lower case",
     SHORT_ID: "must be 8 hexadecimal digits in lower case",
+    DEVICE: "must be 32 hexadecimal digits in lower case",
+    NONCE: "must be letters, digits, '_' or '-'",
 }
 """In what words each pattern is told."""

@@ -35,6 +35,7 @@ from mend.server.api import fleet as fleet_api
 from mend.server.api import models as models_api
 from mend.server.api import poses as poses_api
 from mend.server.api import principals as principals_api
+from mend.server.api import push as push_api
 from mend.server.api import requests as requests_api
 from mend.server.api import sites as sites_api
 from mend.server.api import worlds as worlds_api
@@ -53,6 +54,7 @@ from mend.server.off_loop import OffLoop
 from mend.server.pace import Sleep
 from mend.server.poses.feed import PoseSource
 from mend.server.public_url import host_of
+from mend.server.push.push import Push
 from mend.server.refusals import Refusals
 from mend.server.robots.passes import OwnRobots
 from mend.server.runtime.service import RunService
@@ -74,6 +76,7 @@ ROUTES = (
     leaves,
     poses_api,
     dialogues,
+    push_api,
     robots,
     pictures,
     models_api,
@@ -107,6 +110,7 @@ def create_app(
     poses: PoseSource,
     access: Access,
     deeds: DeedLog,
+    push: Push,
     speech_abilities: SpeechAbilities = NO_SPEECH,
     refusals: Refusals | None = None,
     off_loop: OffLoop | None = None,
@@ -134,6 +138,7 @@ def create_app(
         settings,
         access,
         deeds,
+        push,
         Repeats(journal, settings.limits, refusals, wall_time_s),
         speech_abilities,
         refusals,

@@ -29,6 +29,8 @@ from mend.server.models import RobotModels
 from mend.server.off_loop import OffLoop
 from mend.server.poses.feed import PoseFeed
 from mend.server.poses.record import PoseRecords
+from mend.server.push.push import Push
+from mend.server.push.subscriptions import PushSubscriptions
 from mend.server.refusals import Refusals
 from mend.server.retention import prune_regularly
 from mend.server.robots.passes import OwnRobots
@@ -73,6 +75,7 @@ class Service:
     url: str
     public_url: str | None
     settings: Settings
+    devices: PushSubscriptions
 
     @property
     def robots_url(self) -> str:
@@ -188,6 +191,14 @@ async def _open(
         refusals=refusals,
     )
     fleets = Fleets(sites, runtime, journal, poses, utc_now=lambda: datetime.now(UTC))
+    push = Push(
+        journal,
+        runtime.dialogues,
+        access,
+        settings,
+        settings.push_key_path if recover else None,
+        utc_now=lambda: datetime.now(UTC),
+    )
     speech = _speech(settings)
     app = create_app(
         runtime,
@@ -203,6 +214,7 @@ async def _open(
         poses=poses,
         access=access,
         deeds=deeds,
+        push=push,
         speech_abilities=speech,
         refusals=refusals,
         off_loop=off_loop,
@@ -220,6 +232,7 @@ async def _open(
             await runtime.recover()
             await fleets.recover()
             await deeds.recover(access.sessions)
+            await push.start()
         pruning = asyncio.create_task(
             prune_regularly(
                 journal.prune, poses.forget, settings.keep.keep(), await _pruning_time(journal)
@@ -230,7 +243,10 @@ async def _open(
         watching = asyncio.create_task(_watch_access(access, deeds, journal_changes=recover))
         serving = asyncio.create_task(server.serve(sockets=[config_socket]), name="server")
         await server.wait_until_started(serving)
-        yield Service(runtime, journal, registry, library, sites, fleets, url, public_url, settings)
+        yield Service(
+            runtime, journal, registry, library, sites, fleets, url, public_url, settings,
+            push.subscriptions,
+        )  # fmt: skip
     finally:
         # From the last to the first, each of them also where one before has failed.
         async with AsyncExitStack() as ending:
@@ -241,6 +257,7 @@ async def _open(
             ending.push_async_callback(_stop_speech, speech, rendering)
             ending.callback(poses.shut)
             ending.push_async_callback(mail.close)
+            ending.push_async_callback(push.close)
             ending.push_async_callback(_cancel, watching)
             ending.push_async_callback(sites.close)
             ending.push_async_callback(runtime.close)

@@ -9,6 +9,7 @@ from pydantic import TypeAdapter
 
 from mend.server.api import helper_messages, speech_messages
 from mend.server.journal.events import AnyEvent
+from mend.server.push.messages import PushMessage
 from mend.server.schemas import DIALECT, TO_HELPERS, Models, asyncapi, members_of, openapi
 from mend.server.transcript_line import Line
 
@@ -28,6 +29,8 @@ def console() -> dict[str, Any]:
     definitions["ToHelper"] = _one_of(TO_HELPERS)
     definitions["FromSpeaker"] = _one_of(members_of(speech_messages.SpeechClientMessage))
     definitions["ToSpeaker"] = _one_of(members_of(speech_messages.SpeechServerMessage))
+    definitions |= TypeAdapter(PushMessage).json_schema(mode="serialization")["$defs"]
+    definitions["PushMessage"] = _one_of(members_of(PushMessage))
     bodies = [
         operation["requestBody"]
         for methods in rest["paths"].values()

@@ -34,6 +34,7 @@ SetLimitName = Literal[
     "robot_messages_per_s",
     "helper_messages_per_s",
     "requests_per_s",
+    "push_subscriptions",
 ]
 """Those that can be set, as `Limits` has them."""
 
@@ -120,3 +121,5 @@ class Limits(BaseModel):
     """Messages of one helper's connection, of whatever kind, counted in the same way."""
     requests_per_s: AtLeastOne = 100
     """Requests of one principal with a credential of their own that are answered in a second."""
+    push_subscriptions: AtLeastOne = 100
+    """Devices of one principal that are called; without principals all are of one."""

@@ -1,11 +1,10 @@
 """The key that browser sessions are signed with, kept so that they survive a restart."""
 
 import logging
-import os
 from pathlib import Path
 
 from mend.server.access.sessions import KEY_BYTES, new_session_key
-from mend.server.journal.file_mode import OWNERS_FILE
+from mend.server.kept_secret import keep_secret
 
 log = logging.getLogger(__name__)
 
@@ -25,20 +24,10 @@ def session_key(file: Path) -> bytes:
         return _for_now(file, "read", error)
     key = new_session_key()
     try:
-        _keep(key, file)
+        keep_secret(key, file)
     except OSError as error:
         return _for_now(file, "kept", error)
     return key
-
-
-def _keep(key: bytes, file: Path) -> None:
-    """All of it or nothing, and never readable by others."""
-    half = file.with_name(f"{file.name}.new")
-    half.unlink(missing_ok=True)
-    descriptor = os.open(half, os.O_WRONLY | os.O_CREAT | os.O_EXCL, OWNERS_FILE)
-    with os.fdopen(descriptor, "wb") as written:
-        written.write(key)
-    half.replace(file)
 
 
 def _for_now(file: Path, done: str, error: OSError) -> bytes:

@@ -17,7 +17,7 @@ from pydantic_settings import (
 
 from mend.documents.plain_mistakes import what_it_must_be
 from mend.errors import WrongInputError
-from mend.server.dialogues.mail import MailSettings
+from mend.server.dialogues.mail import Address, MailSettings
 from mend.server.journal.sqlite import IN_MEMORY
 from mend.server.limits import Limits
 from mend.server.proxies import ProxyNetwork
@@ -29,6 +29,9 @@ Seconds = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
 HostName = Annotated[str, Field(min_length=1, max_length=253)]
 
 CONFIG_VARIABLE = "MEND_CONFIG"
+
+NO_CONTACT = "nobody@example.org"
+"""What push services are told where no address is known; the domain is nobody's (RFC 2606)."""
 
 MOST_CHARS = 500
 """Of a sentence about a setting."""
@@ -86,6 +89,17 @@ class Settings(BaseSettings):
     """Whom to ask, in this order; empty: everybody at once."""
     mail: MailSettings | None = None
     """The mail server and the operators to write to when no helper answers; None: nobody."""
+    push_services: list[HostName] = [
+        "fcm.googleapis.com",
+        "android.googleapis.com",
+        "jmt17.google.com",
+        "push.services.mozilla.com",
+        "push.apple.com",
+        "notify.windows.com",
+    ]
+    """Hosts, and those below them, through which helpers' devices may be called; empty: none."""
+    push_contact: Address | None = None
+    """Where push services reach the operators; unless set, the sender of the mails."""
     ask_deadline_s: Seconds = 30.0
     mail_deadline_s: Seconds = 600.0
     """How long to wait for an answer after the operators were written to."""
@@ -132,8 +146,23 @@ class Settings(BaseSettings):
     @property
     def session_key_path(self) -> Path | None:
         """The key of the sessions, beside the journal; None for one in memory."""
+        return self._beside_journal(".key")
+
+    @property
+    def push_key_path(self) -> Path | None:
+        """The key that push services know the service by, likewise."""
+        return self._beside_journal(".push_key")
+
+    def _beside_journal(self, suffix: str) -> Path | None:
         in_memory = str(self.journal_path) == IN_MEMORY
-        return None if in_memory else self.journal_path.with_suffix(".key")
+        return None if in_memory else self.journal_path.with_suffix(suffix)
+
+    @property
+    def contact_for_push_services(self) -> str:
+        """A mail address, which some of them ask for (RFC 8292)."""
+        if self.push_contact is not None:
+            return self.push_contact
+        return self.mail.sender if self.mail is not None else NO_CONTACT
 
     @property
     def asks_for_tokens(self) -> bool:

@@ -206,6 +206,12 @@ class Access:
         fit = principal is not None and self.sessions.fits(session, principal)
         return principal if fit else None
 
+    def still(self, name: str, key: str) -> Principal | None:
+        """The principal of that name as it is now, if it still has the credential of that key."""
+        principal = self._named(name) if self.required else ANYBODY
+        fit = principal is not None and (principal.name, principal.key) == (name, key)
+        return principal if fit else None
+
     def _named(self, name: str) -> Principal | None:
         return self._holder if name == TOKEN_NAME else self.principals.of_name(name)
 

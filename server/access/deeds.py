@@ -64,7 +64,7 @@ DEEDS: frozenset[str] = frozenset(
         "answered", "claimed", "released", "deadline_extended",
         "document_kept", "document_deleted", "signed_in", "sign_in_failed", "signed_out",
         "access_changed", "site_opened", "site_closed", "node_taken", "request_changed",
-        "fleet_told", "errand_begun",
+        "fleet_told", "errand_begun", "push_subscribed", "push_ended",
     }
 )  # fmt: skip
 """The types of events that are deeds; some of them only where somebody did them."""
@@ -167,7 +167,7 @@ def _what(event: ev.Event) -> str | None:
             return f"took '{name}' as '{helper}', to do it"
         case ev.SignedOut():
             return "signed out"
-    return _what_of_dialogue(event) or _what_of_access(event)
+    return _what_of_dialogue(event) or _what_of_access(event) or _what_of_push(event)
 
 
 def _what_of_dialogue(event: ev.Event) -> str | None:
@@ -180,6 +180,15 @@ def _what_of_dialogue(event: ev.Event) -> str | None:
             return f"released the claim of '{helper}' ({issue}, '{name}')"
         case ev.DeadlineExtended(issue=issue, name=name, helper=helper):
             return f"took more time as '{helper}' ({issue}, '{name}')"
+    return None
+
+
+def _what_of_push(event: ev.Event) -> str | None:
+    match event:
+        case ev.PushSubscribed(helper=helper, device=device):
+            return f"wants '{device}' to be called as '{helper}'"
+        case ev.PushEnded(author=ev.Author(), helper=helper, device=device):
+            return f"wants '{device}' to be called as '{helper}' no more"
     return None
 
 

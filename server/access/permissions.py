@@ -43,6 +43,7 @@ _FLEET_ROBOT = _SITE + "/fleet/robots/{robot}"
 _REQUEST = "/api/requests/{name:path}"
 _DIALOGUE = "/api/dialogues/{dialogue}"
 _SPEECH = _DIALOGUE + "/prompts/{prompt}/speech"
+_DEVICES = "/api/push/subscriptions"
 _PRINCIPAL = "/api/access/principals/{name}"
 
 ENDPOINTS: tuple[Endpoint, ...] = (
@@ -93,6 +94,11 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     Endpoint("claim_dialogue", "POST", _DIALOGUE + "/claim", Role.HELPER),
     Endpoint("release_dialogue", "POST", _DIALOGUE + "/release", Role.HELPER),
     Endpoint("extend_deadline", "POST", _DIALOGUE + "/extend", Role.HELPER),
+    Endpoint("get_push", "GET", "/api/push", Role.VIEWER),
+    Endpoint("list_push_subscriptions", "GET", _DEVICES, Role.HELPER),
+    Endpoint("add_push_subscription", "POST", _DEVICES, Role.HELPER),
+    Endpoint("end_push_subscription", "DELETE", _DEVICES + "/{device}", Role.HELPER),
+    Endpoint("try_push_subscription", "POST", _DEVICES + "/{device}/trial", Role.HELPER),
     Endpoint("list_robots", "GET", "/api/robots", Role.VIEWER),
     Endpoint("enrol_robot", "POST", "/api/robots/enrol", OPEN),
     Endpoint("get_picture", "GET", "/api/pictures/{picture}", Role.VIEWER),

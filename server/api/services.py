@@ -25,6 +25,7 @@ from mend.server.journal.writer import CommitStatistics
 from mend.server.models import RobotModels
 from mend.server.off_loop import OffLoop
 from mend.server.poses.feed import PoseSource
+from mend.server.push.push import Push
 from mend.server.refusals import Refusals
 from mend.server.runtime.service import RunService
 from mend.server.runtime.views import WorldView
@@ -73,6 +74,7 @@ class Services:
     settings: Settings
     access: Access
     deeds: DeedLog
+    push: Push
     repeats: "Repeats"
     speech: SpeechAbilities = NO_SPEECH
     refusals: Refusals = field(default_factory=Refusals)

@@ -19,6 +19,13 @@ def serve(
     ] = None,
     port: Annotated[int | None, typer.Option(help="Port to listen on; 0 takes a free one.")] = None,
     journal: Annotated[Path | None, typer.Option(help="The journal's file.")] = None,
+    tls_cert: Annotated[
+        Path | None,
+        typer.Option(help="The service's certificate in PEM: it then speaks HTTPS alone."),
+    ] = None,
+    tls_key: Annotated[
+        Path | None, typer.Option(help="The certificate's private key in PEM.")
+    ] = None,
     config: Annotated[Path | None, typer.Option(help="Settings in a TOML file.")] = None,
 ) -> None:
     """Serve the API, the helper console and the robots' socket.
@@ -29,7 +36,14 @@ def serve(
     from mend.server.settings import load_settings
 
     with told_plainly():
-        settings = load_settings(config, host=host, port=port, journal=journal)
+        settings = load_settings(
+            config,
+            host=host,
+            port=port,
+            journal=journal,
+            tls_certificate=tls_cert,
+            tls_key=tls_key,
+        )
         asyncio.run(_serve(settings))
 
 

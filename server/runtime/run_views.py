@@ -168,6 +168,7 @@ def dialogue_view(dialogue: DialogueState) -> DialogueView:
         node=opened.node,
         name=opened.name,
         scripted=opened.scripted,
+        interrupts=dialogue.raised.interrupts,
         prompt=None
         if prompt is None
         else PromptView(

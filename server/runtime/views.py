@@ -89,6 +89,8 @@ class DialogueView(View):
     node: str
     name: str
     scripted: bool = False
+    interrupts: bool = True
+    """Whether the robot waits; where it does not, help is needed now or not at all."""
     prompt: PromptView | None
     awaiting: Literal["answer", "help"] | None
     answered_by: str | None

@@ -39,6 +39,7 @@ def _filled(path: str) -> str:
         "file": "a.stl",
         "answer": "yes",
         "robot": "nobody",
+        "device": "0" * 32,
     }
     for parameter in ("run", "site", "dialogue", "prompt", "picture"):
         path = path.replace(f"{{{parameter}}}", str(NOBODY))

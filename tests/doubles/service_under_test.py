@@ -31,6 +31,7 @@ from mend.server.models import RobotModels
 from mend.server.pace import Sleep
 from mend.server.poses.feed import PoseFeed
 from mend.server.poses.record import PoseRecords
+from mend.server.push.push import Push
 from mend.server.refusals import Refusals
 from mend.server.robots.passes import OwnRobots
 from mend.server.robots.registry import RobotRegistry
@@ -138,6 +139,7 @@ def build(
         poses=poses,
         access=access,
         deeds=deeds,
+        push=Push(journal, runs.dialogues, access, chosen, None, utc_now, now),
         speech_abilities=speech,
         refusals=refusals,
         wall_time_s=wall_time_s,

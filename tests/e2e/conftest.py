@@ -58,7 +58,13 @@ async def browser() -> AsyncIterator[Browser]:
 @pytest_asyncio.fixture(loop_scope="session")
 async def service(tmp_path: Path) -> AsyncIterator[Service]:
     """The whole service, on a journal of its own; it is read, not heard."""
-    settings = Settings(data_dir=tmp_path, port=0, token=TOKEN, speech_voice="none")
+    settings = Settings(
+        data_dir=tmp_path,
+        port=0,
+        token=TOKEN,
+        speech_voice="none",
+        push_services=["127.0.0.1"],
+    )
     async with open_service(settings) as service:
         yield service
 

@@ -597,6 +597,24 @@ def test_colors_are_learned_from_supplied_pictures(mend: Mend, tmp_path: Path) -
 # --- As a process -----------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        (["--tls-cert", "nowhere.pem"], "'tls_certificate' and 'tls_key' go together"),
+        (
+            ["--tls-cert", "nowhere.pem", "--tls-key", "nowhere.pem"],
+            "'tls_certificate' (nowhere.pem) cannot be read: No such file",
+        ),
+    ],
+)
+def test_tls_files_that_cannot_be_used_end_the_start_with_a_sentence(
+    mend: Mend, given: list[str], why: str
+) -> None:
+    outcome = mend("serve", "--port", "0", *given)
+    assert outcome.code == 2
+    assert why in " ".join(outcome.err.split())
+
+
 COMMAND = [sys.executable, "-c", "from mend.server.cli import main; main()"]
 
 

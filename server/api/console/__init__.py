@@ -17,14 +17,16 @@ TYPES = {
     ".css": "text/css",
     ".html": "text/html",
     ".js": "text/javascript",
+    ".png": "image/png",
     ".svg": "image/svg+xml",
+    ".webmanifest": "application/manifest+json",
 }
 
 HEADERS = {
     "Content-Security-Policy": (
         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:;"
-        " media-src 'self' blob:; worker-src 'self'; connect-src 'self'; base-uri 'none';"
-        " form-action 'self'; frame-ancestors 'none'"
+        " media-src 'self' blob:; worker-src 'self'; connect-src 'self'; manifest-src 'self';"
+        " base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
     ),
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -86,6 +88,24 @@ async def asset(name: str, accept_encoding: Accepted = "") -> Response:
 async def icon(accept_encoding: Accepted = "") -> Response:
     """The icon."""
     return _file("icon.svg", accept_encoding, CHECK_AGAIN)
+
+
+@router.get("/icons/{name}")
+async def other_icon(name: str) -> Response:
+    """The icon as devices want it that install the page or show a notification."""
+    return _file(f"icons/{name}", "", CHECK_AGAIN)
+
+
+@router.get("/manifest.webmanifest")
+async def manifest(accept_encoding: Accepted = "") -> Response:
+    """What a device needs to know to install the page."""
+    return _file("manifest.webmanifest", accept_encoding, CHECK_AGAIN)
+
+
+@router.get("/service_worker.js")
+async def service_worker(accept_encoding: Accepted = "") -> Response:
+    """What shows calls while no page is open; a browser looks each time whether it is new."""
+    return _file("service_worker.js", accept_encoding, CHECK_AGAIN)
 
 
 def _file(name: str, accept_encoding: str, caching: dict[str, str], status: int = 200) -> Response:

@@ -64,6 +64,8 @@ from mend.server.journal.events.service_events import (
     AccessChanged,
     DocumentDeleted,
     DocumentKept,
+    PushEnded,
+    PushSubscribed,
     SignedIn,
     SignedOut,
     SignInFailed,
@@ -121,6 +123,8 @@ AnyEvent = Annotated[
     | SignInFailed
     | SignedOut
     | AccessChanged
+    | PushSubscribed
+    | PushEnded
     | SiteOpened
     | SiteGivenBack
     | SiteRestarted

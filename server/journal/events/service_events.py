@@ -75,3 +75,26 @@ class AccessChanged(ServiceEvent):
     role: Role
     author: Author
     change: UUID | None = None
+
+
+class PushSubscribed(ServiceEvent):
+    """A helper wants a device to be called; where that is done is a secret, and not told here."""
+
+    type: Literal["push_subscribed"] = "push_subscribed"
+    helper: str
+    device: str
+    author: Author
+
+
+class PushEnded(ServiceEvent):
+    """A device is called no more: its helper `asked` for that, or it cannot be.
+
+    `gone`: its push service knows it no more; `revoked`: the credential that it was subscribed
+    with is good no more; `key_changed`: the service has another push key.
+    """
+
+    type: Literal["push_ended"] = "push_ended"
+    helper: str
+    device: str
+    why: Literal["asked", "gone", "revoked", "key_changed"]
+    author: Author | None = None

@@ -8,6 +8,8 @@ import { SignIn } from "../sign_in/sign_in";
 import { session } from "../state/service";
 import { ConnectionBar } from "./connection_bar";
 import { Header } from "./header";
+import { besideRobot, helperName, pushOn } from "../state/preferences";
+import { SoundBar } from "../calling/sound_bar";
 import { later } from "./later";
 import { type Route, route } from "./router";
 import "./app.css";
@@ -25,6 +27,10 @@ const SettingsView = later(() => import("../settings/settings_view").then((modul
 
 export function App() {
   useEffect(() => (session.value === "in" ? followFleets() : undefined), [session.value]);
+  useEffect(() => (session.value === "in" && besideRobot.value ? standBeside() : undefined), [session.value, besideRobot.value]);
+  useEffect(() => {
+    if (session.value === "in" && pushOn.value) void import("../calling/push").then((push) => push.callThisDeviceStill());
+  }, [session.value, helperName.value]);
   if (session.value === "unknown") return <p class="app-waiting">Looking for the service …</p>;
   if (session.value !== "in") return <SignIn />;
   const shown = route.value;
@@ -44,6 +50,7 @@ export function App() {
       <div class="top">
         <Header />
         <ConnectionBar />
+        <SoundBar />
       </div>
       <Announcer />
       <AskBar />
@@ -88,4 +95,10 @@ function View({ shown }: { shown: Exclude<Route, { view: "touch" }> }) {
         </section>
       );
   }
+}
+
+/** Its code is loaded on devices that stand beside a robot. */
+function standBeside(): () => void {
+  const begun = import("../calling/beside_robot").then((beside) => beside.standBeside());
+  return () => void begun.then((stop) => stop());
 }

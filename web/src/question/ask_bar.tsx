@@ -2,6 +2,7 @@
 import { route } from "../app/router";
 import { fleetAt } from "../requests/fleets";
 import { faultInWords, robotName } from "./fault_words";
+import { isPutOff, putOffCalls, rings } from "../calling/calls";
 import { shown } from "./queue";
 import { questions } from "../state/questions";
 import "./ask_bar.css";
@@ -22,9 +23,16 @@ export function AskBar() {
         <strong>{robotName(question.robot)} asks for help.</strong> {faultInWords(question)}
         {others > 0 && <span class="quiet"> And {others} more.</span>}
       </p>
-      <a class="button primary" href="/">
-        Answer
-      </a>
+      <div class="ask-bar-buttons">
+        {rings.value.length > 0 && !isPutOff(question) && (
+          <button type="button" class="button" onClick={() => putOffCalls(question)}>
+            Not me
+          </button>
+        )}
+        <a class="button primary" href="/">
+          Answer
+        </a>
+      </div>
     </aside>
   );
 }

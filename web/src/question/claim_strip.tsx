@@ -2,6 +2,7 @@
 import { may } from "../state/access";
 import { helperName } from "../state/preferences";
 import type { Question } from "../state/questions";
+import { isPutOff, putOffCalls, takeCallsAgain } from "../calling/calls";
 import { claim, release } from "./claiming";
 import { askedNow } from "./turn";
 import "./claim_strip.css";
@@ -35,14 +36,22 @@ export function ClaimStrip({ question }: { question: Question }) {
 function NobodyOnIt({ question }: { question: Question }) {
   const asked = askedNow(question);
   const others = asked !== null && asked !== helperName.value;
-  const who = asked === null ? "Nobody is on it yet." : others ? `${asked} is asked now.` : "You are asked now.";
+  const off = isPutOff(question);
+  const who = off ? "You are not called about it here." : asked === null ? "Nobody is on it yet." : others ? `${asked} is asked now.` : "You are asked now.";
   return (
     <div class={`claim ${others ? "others" : ""}`}>
       <p class={others ? undefined : "quiet"}>{who}</p>
       {may("helper") && (
-        <button type="button" class="button" onClick={() => void claim(question.dialogue, false)}>
-          {others ? "Take it" : "I am on it"}
-        </button>
+        <div class="claim-buttons">
+          {!others && (
+            <button type="button" class="button" onClick={() => (off ? takeCallsAgain : putOffCalls)(question)}>
+              {off ? "Call me again" : "Not me"}
+            </button>
+          )}
+          <button type="button" class="button" onClick={() => void claim(question.dialogue, false)}>
+            {others ? "Take it" : "I am on it"}
+          </button>
+        </div>
       )}
     </div>
   );

@@ -4,6 +4,7 @@ import { may } from "../state/access";
 import { keys, keysOn } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { lastHeard, type SpeechPhase, speechLacks, speechPhase } from "../speech/speech_state";
+import { switchOff, switchOn } from "../speech/speech_switch";
 import { repeat } from "./repeating";
 import "./speech_controls.css";
 
@@ -16,8 +17,6 @@ const PHASES: Readonly<Record<SpeechPhase, string>> = {
   hearing: "Listening to you …",
   gave_up: "Not understood. Please use the buttons.",
 };
-
-let stop: (() => void) | null = null;
 
 export function SpeechControls({ question, onAct }: { question: Question; onAct(): void }) {
   const [failed, setFailed] = useState(false);
@@ -62,20 +61,4 @@ export function SpeechControls({ question, onAct }: { question: Question; onAct(
       {speechLacks.value !== "" && <p class="speech-lacks small">{speechLacks.value}</p>}
     </div>
   );
-}
-
-async function switchOn(): Promise<void> {
-  speechPhase.value = "starting";
-  try {
-    const { beginToSpeak } = await import("../speech/spoken_dialogue");
-    stop = await beginToSpeak();
-  } catch (error) {
-    speechPhase.value = "off";
-    throw error;
-  }
-}
-
-function switchOff(): void {
-  stop?.();
-  stop = null;
 }

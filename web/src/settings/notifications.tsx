@@ -1,10 +1,12 @@
 // Desktop notifications: the browser is asked for leave only when the helper asks for them.
 import { useState } from "preact/hooks";
-import { notificationsOn } from "../state/preferences";
+import { notificationsOn, pushOn } from "../state/preferences";
 
 export function Notifications() {
   const available = "Notification" in window;
   const [allowed, setAllowed] = useState(available ? Notification.permission : "denied");
+  // Calls to this device show the same.
+  if (pushOn.value) return null;
   if (!available) return <p class="small quiet">This browser has no desktop notifications.</p>;
   const ask = async () => {
     const answer = await Notification.requestPermission();

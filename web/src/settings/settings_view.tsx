@@ -1,10 +1,10 @@
 // What a helper can set on this device.
 import { useState } from "preact/hooks";
 import { principal } from "../state/access";
-import { helperName, soundOn, type Theme, theme } from "../state/preferences";
+import { helperName, type Theme, theme } from "../state/preferences";
 import { call, signOut, tokenRequired } from "../state/service";
 import { AnswerKeys } from "./answer_keys";
-import { Notifications } from "./notifications";
+import { Calling } from "./calling";
 import { VoiceChoice } from "./voice_choice";
 import "./settings.css";
 
@@ -38,20 +38,7 @@ export function SettingsView() {
         </p>
       </div>
       <AnswerKeys />
-      <section class="panel setting-group" aria-labelledby="arrival-title">
-        <h2 id="arrival-title">When a question comes</h2>
-        <label class="choice">
-          <input
-            type="checkbox"
-            checked={soundOn.value}
-            onChange={(event) => {
-              soundOn.value = event.currentTarget.checked;
-            }}
-          />
-          Play a short sound
-        </label>
-        <Notifications />
-      </section>
+      <Calling />
       <VoiceChoice />
       <fieldset class="panel setting-group">
         <legend>Colours</legend>

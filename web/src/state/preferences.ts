@@ -30,6 +30,10 @@ export const soundOn = kept("sound_on", true);
 export const voice = kept<Voice>("voice", "service");
 /** The runs that ended badly which were looked at, or put aside, on this device; the latest last. */
 export const knownFailures = kept<readonly string[]>("known_failures", []);
+/** Whether the service is to call this device also while no page is open. */
+export const pushOn = kept("push_on", false);
+/** Whether this device stands beside a robot: it stays awake, speaks and listens. */
+export const besideRobot = kept("beside_robot", false);
 export const notificationsOn = kept("notifications_on", false);
 
 effect(() => {

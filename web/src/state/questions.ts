@@ -22,6 +22,8 @@ export interface Together {
   prompt: string;
   text: string;
   picture: string | null;
+  /** Who has said that they help. */
+  helper: string | null;
 }
 
 // How often a question may get more time is the service's rule; it corrects this with each extension.
@@ -169,6 +171,7 @@ function opened(event: Extract<Event, { type: "dialogue_opened" }>): Question {
     node: event.node,
     name: event.name,
     scripted: event.scripted,
+    interrupts: issue?.interrupts ?? true,
     prompt: null,
     awaiting: null,
     answered_by: null,
@@ -186,7 +189,7 @@ function close(question: Question, reason: Extract<Event, { type: "dialogue_clos
   const statement = question.prompt?.kind === "say" ? question.prompt : null;
   if (resolutions.get(question.dialogue) === "collab_finish" && statement !== null && !question.scripted) {
     const { prompt, text } = statement;
-    together.value = [...together.value, { ...question, prompt, text }];
+    together.value = [...together.value, { ...question, prompt, text, helper: question.answered_by }];
   } else if (!question.scripted) {
     tellEnding(question, closing(reason, statement?.text ?? null));
   }

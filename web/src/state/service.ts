@@ -5,7 +5,7 @@ import * as rest from "../wire/rest";
 import type { Told } from "../wire/told";
 import type { Event, RunStatus, RunSummary, SnapshotMessage } from "../wire/types";
 import { principal, role } from "./access";
-import { helperName } from "./preferences";
+import { helperName, pushOn } from "./preferences";
 import { takeDialogueEvent, takeDialogues } from "./questions";
 
 export type Session = "unknown" | "needs_token" | "needs_name" | "in";
@@ -72,6 +72,8 @@ export async function signIn(token: string): Promise<void> {
 
 /** Rejects, and stays signed in, where the service cannot end the session now. */
 export async function signOut(): Promise<void> {
+  // Whoever signs in here next has not asked for the calls of somebody else.
+  if (pushOn.value) await import("../calling/push").then((push) => push.callThisDeviceNoMore()).catch(() => undefined);
   socket?.close();
   socket = null;
   try {

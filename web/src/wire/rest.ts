@@ -10,6 +10,7 @@ import type {
   Layout,
   LeafSaid,
   Problem as ProblemDocument,
+  PushView,
   RequestView,
   RobotView,
   RunRequest,
@@ -21,7 +22,9 @@ import type {
   SessionView,
   SiteView,
   SpeechView,
+  TrialView,
   UnderstoodView,
+  DeviceView,
   DocumentCheck,
   DocumentSummary,
   DocumentView,
@@ -173,6 +176,18 @@ export const speech = () => call<SpeechView>("GET", "/api/speech");
 export const promptSoundPath = (id: string, prompt: string) =>
   `/api/dialogues/${segment(id)}/prompts/${segment(prompt)}/speech`;
 export const phraseSoundPath = (name: string) => `/api/speech/phrases/${segment(name)}`;
+
+export const push = (helper: string) => call<PushView>("GET", `/api/push?helper=${segment(helper)}`);
+export const pushSubscriptions = () => call<DeviceView[]>("GET", "/api/push/subscriptions");
+/** Have the service call a device; `found` is what its browser subscribed. */
+export function addPushSubscription(found: PushSubscription, device: string, helper: string): Promise<DeviceView> {
+  const { endpoint, keys } = found.toJSON();
+  const body = { endpoint, keys: { p256dh: keys?.["p256dh"], auth: keys?.["auth"] }, device, helper };
+  return call<DeviceView>("POST", "/api/push/subscriptions", body);
+}
+const device = (id: string) => `/api/push/subscriptions/${segment(id)}`;
+export const endPushSubscription = (id: string) => call<void>("DELETE", device(id));
+export const tryPushSubscription = (id: string, nonce: string) => call<TrialView>("POST", `${device(id)}/trial`, { nonce });
 
 export const robots = () => call<RobotView[]>("GET", "/api/robots");
 const atSite = (site: string, name = "") =>

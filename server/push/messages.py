@@ -1,0 +1,48 @@
+"""What is pushed to a device; the console's service worker shows it."""
+
+from typing import Annotated, Literal
+from uuid import UUID
+
+from pydantic import BaseModel, ConfigDict, Field
+
+MOST_CHARS = 400
+"""Of a text; a whole message may have some 3900 bytes (RFC 8291), and a character up to six."""
+
+
+class PushModel(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class CallMessage(PushModel):
+    """A robot asks. `urgent`: it does not wait, so that help is needed now or not at all."""
+
+    type: Literal["call"] = "call"
+    dialogue: UUID
+    run: UUID
+    robot: str
+    text: str
+    urgent: bool = False
+
+
+class WithdrawnMessage(PushModel):
+    """What was called about needs this device no more; `text` says why."""
+
+    type: Literal["withdrawn"] = "withdrawn"
+    dialogue: UUID
+    robot: str
+    text: str
+
+
+class TrialMessage(PushModel):
+    """A push that a device has asked for, to see whether pushes reach it."""
+
+    type: Literal["trial"] = "trial"
+    nonce: str
+
+
+PushMessage = Annotated[CallMessage | WithdrawnMessage | TrialMessage, Field(discriminator="type")]
+
+
+def shortened(text: str) -> str:
+    """A text that fits into a message."""
+    return text if len(text) <= MOST_CHARS else f"{text[: MOST_CHARS - 1]}…"

@@ -1,0 +1,50 @@
+// How a call looks as a notification: the same whether it was pushed or the page itself shows it.
+import { robotName } from "../question/fault_words";
+import type { CallMessage, WithdrawnMessage } from "../wire/types";
+
+/** What notifications can have beyond what TypeScript knows. */
+export interface NoticeOptions extends NotificationOptions {
+  renotify?: boolean;
+  vibrate?: readonly number[];
+}
+
+export interface Notice {
+  title: string;
+  options: NoticeOptions;
+}
+
+/** What is over is told under one tag: it never piles up. */
+export const OVER = "over";
+const TRIAL = "trial";
+const LOOKS = { icon: "/icons/192.png", badge: "/icons/badge.png" };
+
+/** `quiet`: the page is before somebody's eyes, and makes itself heard. */
+export function callNotice(call: Omit<CallMessage, "type">, quiet: boolean): Notice {
+  const robot = robotName(call.robot);
+  return {
+    title: call.urgent ? `${robot} needs help now` : `${robot} asks for help`,
+    options: {
+      ...LOOKS,
+      body: call.text,
+      tag: call.dialogue,
+      renotify: true,
+      requireInteraction: true,
+      silent: quiet,
+      // Both at once are refused.
+      ...(quiet ? {} : { vibrate: call.urgent ? [500, 150, 500, 150, 800] : [200, 120, 200] }),
+      data: { dialogue: call.dialogue },
+    },
+  };
+}
+
+export function overNotice({ robot, text }: WithdrawnMessage): Notice {
+  const title = robot === "" ? "You are not needed now" : `${robotName(robot)}: you are not needed now`;
+  return { title, options: { ...LOOKS, body: text, tag: OVER, silent: true } };
+}
+
+export function trialNotice(): Notice {
+  return {
+    title: "Mend can call this device",
+    options: { ...LOOKS, body: "A push has come all the way. This is how a robot's question looks.", tag: TRIAL },
+  };
+}
