@@ -14,8 +14,11 @@ from mend.server.journal.events.dialogue_events import (
     FirstLook,
     HelpAwaited,
     HelpNotSeen,
+    HelpNotSeenYet,
+    HelpReported,
     HelpVerified,
     LookedAnew,
+    PromiseTakenBack,
     Prompt,
     Released,
     Resolved,
@@ -94,6 +97,9 @@ AnyEvent = Annotated[
     | HelpAwaited
     | HelpVerified
     | HelpNotSeen
+    | HelpReported
+    | HelpNotSeenYet
+    | PromiseTakenBack
     | Resolved
     | DialogueClosed
     | InterventionAccepted
