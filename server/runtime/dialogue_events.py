@@ -2,14 +2,24 @@
 
 from collections.abc import Callable, Sequence
 from datetime import datetime
-from typing import Any
+from typing import Any, Protocol
 from uuid import UUID, uuid4
 
 from mend.dialogue.evidence import Change, LookOutcome
-from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Remark, Turn
+from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Help, Remark, Turn
 from mend.server.journal import events as ev
 from mend.server.runtime.unseen_help import Unseen
 from mend.tasks.resolution import Resolution
+
+
+class Promised(Protocol):
+    """Help that somebody has promised, and who that was."""
+
+    @property
+    def help(self) -> Help: ...
+
+    @property
+    def helper(self) -> str: ...
 
 
 class DialogueEvents:
@@ -137,7 +147,7 @@ class DialogueEvents:
         return ev.HelpReported(**self._fields(), help=awaiting.help, helper=helper, author=author)
 
     def promise_taken_back(
-        self, awaiting: ev.HelpAwaited, author: ev.Author | None
+        self, awaiting: Promised, author: ev.Author | None
     ) -> ev.PromiseTakenBack:
         fields = {**self._fields(), "help": awaiting.help, "helper": awaiting.helper}
         return ev.PromiseTakenBack(**fields, author=author)
