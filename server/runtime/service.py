@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Literal, Protocol
 from uuid import UUID
 
+from mend.server.camera_picture import CameraPicture
 from mend.server.journal.events import (
     Answered,
     Author,
@@ -151,8 +152,8 @@ class RunService(Protocol):
         """Have a person do something in a simulated world. Raises `ConflictError` if it cannot."""
         ...
 
-    async def picture(self, run: UUID, camera: str) -> bytes:
-        """A camera's picture now, as JPEG."""
+    async def picture(self, run: UUID, camera: str, robot: str | None = None) -> CameraPicture:
+        """A camera's picture now; of the run's first robot that has one, unless it is named."""
         ...
 
     def robots(self) -> list[RobotView]: ...

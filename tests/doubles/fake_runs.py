@@ -8,6 +8,7 @@ from uuid import UUID, uuid4
 
 from mend.dialogue.script import CloseReason, Help
 from mend.errors import ConflictError, NotFoundError, WrongInputError
+from mend.server.camera_picture import CameraPicture
 from mend.server.documents import CheckedDocument, DocumentMistake, Uploaded, WrongDocumentError
 from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
@@ -66,6 +67,8 @@ class FakeRuns:
         self._runs: dict[UUID, RunView] = {}
         self._dialogues: dict[UUID, DialogueView] = {}
         self._answers: dict[UUID, str] = {}
+        self.photographed: list[tuple[str | None, str]] = []
+        """Of which robot a picture was asked for, and from which camera."""
 
     async def start_run(self, request: RunRequest, author: ev.Author | None = None) -> RunView:
         if request.tree not in TREES:
@@ -224,11 +227,12 @@ class FakeRuns:
             ),
         )
 
-    async def picture(self, run: UUID, camera: str) -> bytes:
+    async def picture(self, run: UUID, camera: str, robot: str | None = None) -> CameraPicture:
         self.run_now(run)
+        self.photographed.append((robot, camera))
         if camera not in ("head", "forearm"):
             raise NotFoundError(f"there is no camera '{camera}'")
-        return JPEG
+        return CameraPicture(JPEG)
 
     async def raise_issue(self, run: UUID) -> DialogueView:
         """Open a dialogue with one question and a picture."""

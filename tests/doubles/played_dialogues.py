@@ -16,6 +16,7 @@ from mend.dialogue.registry import load_scripts
 from mend.dialogue.script import Ask, Sight
 from mend.errors import ConflictError
 from mend.robots.link.messages import Detection
+from mend.server.camera_picture import CameraPicture
 from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal
@@ -169,6 +170,10 @@ class PlayedDialogues(FakeRuns):
         committed = await self._go_on(dialogue, "take_back", [taken_back])
         assert isinstance(committed[0], ev.PromiseTakenBack)
         return committed[0]
+
+    async def picture(self, run: UUID, camera: str, robot: str | None = None) -> CameraPicture:
+        await super().picture(run, camera, robot)
+        return CameraPicture(_jpeg(2))
 
     async def call(self, dialogue: UUID, call: str) -> None:
         """Anything else that moves a conversation on: `silence`, `put_right:...`, `abort`."""

@@ -35,6 +35,7 @@ from mend.robots.link.messages import (
     Start,
     StepStarted,
 )
+from mend.server.camera_picture import CameraPicture
 from mend.server.journal.journal import Receipt
 from mend.server.runtime.dialogue_looks import HELP_TAKES_S, TAKING_S, WATCH_PERIOD_S
 from mend.tasks.intervention import Act
@@ -162,8 +163,8 @@ class PretendRobots:
             self._queues[robot].append((command_id, body))
             self._wake[robot].set()
 
-    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes:  # noqa: ARG002
-        return b"\xff\xd8picture"
+    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> CameraPicture:  # noqa: ARG002
+        return CameraPicture(b"\xff\xd8picture")
 
     def hello(self, robot: str) -> Hello | None:
         return self.robots[robot].hello() if robot in self.robots else None
