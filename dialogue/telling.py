@@ -23,7 +23,7 @@ SEEN_NOW: Mapping[Expectation, str] = {
 _SIGHTS: Mapping[Sight, str] = {
     Sight.NOWHERE: "I do not see it at all.",
     Sight.UNMOVED: "I see it where it was after I asked.",
-    Sight.ELSEWHERE: "I see it somewhere else now.",
+    Sight.ELSEWHERE: "I see it, but not there.",
 }
 
 

@@ -84,7 +84,7 @@ def test_a_word_without_a_change_is_no_help() -> None:
         ),
         (
             Sight.ELSEWHERE,
-            "I do not see the cup where I can reach it yet. I see it somewhere else now. "
+            "I do not see the cup where I can reach it yet. I see it, but not there. "
             "I keep watching.",
         ),
     ],
