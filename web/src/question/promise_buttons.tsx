@@ -2,7 +2,14 @@
 import { helperName } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { connection } from "../state/service";
+import { type SpeechPhase, speechPhase } from "../speech/speech_state";
+import { shown } from "./queue";
 import { maySayDone, mayTakeBack, onItsWay, say, wordMistakes } from "./promise";
+
+const SPOKEN: Partial<Record<SpeechPhase, string>> = {
+  listening: "Speak now: “done”, or “I can’t”",
+  hearing: "Listening to you …",
+};
 
 export function PromiseButtons({ question }: { question: Question }) {
   const { dialogue, help } = question;
@@ -30,6 +37,7 @@ export function PromiseButtons({ question }: { question: Question }) {
       )}
       <p class="promise-note small" role="status">
         {looks && `${help.reported_by === helperName.value ? "You said" : `${help.reported_by} said`} that it is done. The robot looks …`}
+        {!looks && !offline && mistake === undefined && shown.value === null && SPOKEN[speechPhase.value]}
         {offline && "No connection to the service. You can say so as soon as it is back."}
         {mistake !== undefined && !looks && !offline && <span class="mistake">{mistake}</span>}
       </p>
