@@ -274,7 +274,8 @@ class Transcript:
             text = "sees that another way leads round"
         return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
-    @lines.register
+    @lines.register(ev.HelpNotSeen)
+    @lines.register(ev.HelpNotSeenYet)
     def _(self, event: ev.UnseenHelp) -> list[Line]:
         how = "feel" if event.help in _FELT else "see"
         yet = " yet" if isinstance(event, ev.HelpNotSeenYet) else ""

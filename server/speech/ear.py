@@ -28,7 +28,7 @@ MAX_BACKLOG_BYTES = 5 * 32_000
 """Five seconds of sound; an ear so far behind has lost the conversation."""
 
 MOST_KEPT = 2
-"""Each takes about 80 MB."""
+"""Each takes about 80 MB, and more once it has heard of promises."""
 
 HEADER = struct.Struct("<dI")
 """Before each piece of sound: when it came (monotonic seconds), and its bytes."""
