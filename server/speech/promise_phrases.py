@@ -36,7 +36,7 @@ PROMISE_AMBIGUOUS: tuple[str, ...] = (
     "not done yet", "almost done", "nearly done", "is it done", "i'm on it", "i'm coming", "wait",
     "wait a minute", "wait a moment", "one moment please", "hold on", "just a second",
     "just a minute", "yes", "yeah", "no", "nope", "okay", "sure", "down", "gone", "fun", "one",
-    "run", "son", "come", "come on", "dog", "dawn", "none", "dance", "don", "ton", "under", "can",
+    "run", "son", "come", "come on", "dog", "none", "dance", "can",
     "can you", "can he", "candy", "i could", "i know", "i don't know", "i don't think so",
     "hello", "hi there", "thank you", "thanks", "sorry", "why", "when", "where", "how", "so",
     "now", "cook", "book", "took", "good", "check", "deck", "read", "red", "already", "finish",
