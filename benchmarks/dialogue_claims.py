@@ -13,6 +13,9 @@ AT_PLACE_M = 0.04
 CLEARLY_AT_PLACE_M = 0.01
 """A part this near its place, at its height, must not be told not to be there."""
 
+UNMOVED_M = 0.04
+"""What is said to be where it was may be so far off: what is taken for that, and both errors."""
+
 LONG_ENOUGH_S = 2.0
 """What has lain for so long must have been seen."""
 
@@ -111,6 +114,25 @@ def _not_in_reach(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[s
     if not record.is_surely_in_reach(index, event.object):
         return None
     return "it lies there" if record.lay_for_s(index, event.object) >= LONG_ENOUGH_S else None
+
+
+def _not_seen_at_all(
+    record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]
+) -> str | None:
+    moment = record.moment(index)
+    if moment.blocked or moment.dark or record.may_be_hidden(index, event.object, event.robot):
+        return None
+    # Another one that looks the same may be taken for it.
+    if len(record.equals(event.object)) > 1:
+        return None
+    return "it lies there" if record.lay_for_s(index, event.object) >= LONG_ENOUGH_S else None
+
+
+def _where_it_was(record: RunRecord, index: int, event: ev.Prompt, _: re.Match[str]) -> str | None:
+    if not record.rests(index, event.object):
+        return "it is not on the table"
+    moved_m = record.moved_since_first_look_m(index, event)
+    return None if moved_m <= UNMOVED_M else f"it has moved by {moved_m:.3f} m"
 
 
 def _toppled(record: RunRecord, _: int, event: ev.Prompt, __: re.Match[str]) -> str | None:
@@ -262,6 +284,9 @@ CHECKS: Sequence[tuple[str, Check]] = (
     (r"The (.*) is at the (.*) already, which does as well", _there_already),
     (r"What I was handed does not look like", _handed_another),
     (r"I do not see the .* where I can reach it yet", _not_in_reach),
+    (r"I do not see it at all", _not_seen_at_all),
+    (r"I see it where it was after I asked", _where_it_was),
+    (r"I see it, but not there", _somewhere),
     (r"has toppled over", _toppled),
     (r"I cannot find the|cannot find it|I see it nowhere", _nowhere),
     (r"I missed the|I lost hold of|failed .* to (pick up|hold)", _not_held),

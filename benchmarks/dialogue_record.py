@@ -207,6 +207,20 @@ class RunRecord:
             since -= 1
         return self.events[index].time - self.events[since].time
 
+    def moved_since_first_look_m(self, index: int, event: ev.DialogueEvent) -> float:
+        """How far what looks like a dialogue's object is from where that was at its first look.
+
+        Where equal parts lie, that of the nearest; 0 if nothing lay there then.
+        """
+        firsts = [
+            begun
+            for begun, each in enumerate(self.events[:index])
+            if isinstance(each, ev.FirstLook) and each.dialogue == event.dialogue
+        ]
+        before = [rest for at in firsts for rest in self._lying(at, event.object)]
+        now = self._lying(index, event.object)
+        return min((math.hypot(a.x - b.x, a.y - b.y) for a in before for b in now), default=0.0)
+
     def is_surely_in_reach(self, index: int, name: str | None) -> bool:
         """Whether a part lies where the scene has a start or a place: a robot alone reaches those.
 

@@ -23,6 +23,8 @@ async def fuzz_helper(made: Bench, mutations: int, seed: int) -> Found:
         {"type": "claim", **of_it},
         {"type": "release", **of_it},
         {"type": "extend", **asked},
+        {"type": "done", **of_it, "id": "b"},
+        {"type": "take_back", **of_it},
         {"type": "answer", **asked, "answer": "yes", "id": 1},
         {"type": "ping", "id": 7},
         {"type": "auth", "token": "wrong"},

@@ -49,6 +49,8 @@ def requests(made: Bench) -> Sequence[Request]:
         Request("POST", f"{dialogue}/answers", {"prompt": prompt, "answer": "yes", "helper": "a"}),
         Request("POST", f"{dialogue}/claim", {"helper": "anna", "take_over": True}),
         Request("POST", f"{dialogue}/extend", {"prompt": prompt, "helper": "anna"}),
+        Request("POST", f"{dialogue}/done", {"helper": "anna"}),
+        Request("POST", f"{dialogue}/take_back", {"helper": "anna"}),
         Request("POST", f"{dialogue}/release", {"helper": "anna"}),
         Request("POST", "/api/session", {"token": "wrong"}),
         Request("POST", "/api/robots/enrol", {"robot": ROBOT, "code": "ABCD-EFGH"}),

@@ -30,11 +30,12 @@ import pocketsphinx
 from scipy.io import wavfile
 from scipy.signal import resample_poly
 
-from mend.server.speech.commands import Command, phrase_commands
+from mend.server.speech.commands import Command
 from mend.server.speech.decoding import Decoder, Hypothesis, SphinxDecoder
 from mend.server.speech.ear import ProcessEars
 from mend.server.speech.language_model import COMMAND_MARK, command_in, name, write_language_model
 from mend.server.speech.recognizer import Recognizer, Utterance
+from mend.server.speech.vocabulary import phrase_commands
 
 CACHE = Path("out/speech")
 PHRASES = tomllib.loads(Path(__file__).with_name("speech_phrases.toml").read_text())
@@ -122,7 +123,7 @@ def corpus(part: str, voices: Sequence[str], size: Size, seed: int) -> list[Spok
     said: list[Spoken] = []
     for voice in voices:
         chosen = random.Random(f"{voice} {seed}")
-        for command in Command:
+        for command in map(Command, PHRASES[part]["commands"]):
             known = PHRASES[part]["commands"][command]
             count = size.answers if command in (Command.YES, Command.NO) else size.others
             phrases = chosen.sample(known, min(count, len(known)))

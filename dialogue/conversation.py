@@ -1,8 +1,8 @@
 """One conversation: walks a script's table for one issue, as the journal replays it."""
 
-from enum import StrEnum
 from typing import Literal
 
+from mend.dialogue.calls import CALLS, ConversationPhase, DialogueCall
 from mend.dialogue.evidence import Change, PutRight
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.script import (
@@ -21,74 +21,24 @@ from mend.dialogue.script import (
     LeaveState,
     Remark,
     Script,
+    Sight,
     State,
     ToldState,
     Turn,
 )
-from mend.dialogue.spoken import spoken
+from mend.dialogue.telling import SEEN_NOW, asked_about, not_yet, nothing_could_be_seen
 from mend.dialogue.wording import sentence, word
 from mend.tasks.issue import Issue
 from mend.tasks.resolution import Resolution
-from mend.tasks.transitions import Transitions
-
-
-class ConversationPhase(StrEnum):
-    """Where a conversation is, and so which calls it takes."""
-
-    NEW = "new"
-    ASKING = "asking"
-    AWAITING_HELP = "awaiting help"
-    CLOSED = "closed"
-
-
-class DialogueCall(StrEnum):
-    """What comes to a conversation."""
-
-    OPEN = "open"
-    ANSWER = "answer"
-    PUT_RIGHT = "put_right"
-    SILENCE = "silence"
-    HELP_SEEN = "help_seen"
-    HELP_NOT_SEEN = "help_not_seen"
-    ABORT = "abort"
-
-
-_CALLS = Transitions(
-    "the conversation",
-    {
-        ConversationPhase.NEW: (DialogueCall.OPEN, DialogueCall.ABORT),
-        ConversationPhase.ASKING: (
-            DialogueCall.ANSWER,
-            DialogueCall.PUT_RIGHT,
-            DialogueCall.SILENCE,
-            DialogueCall.ABORT,
-        ),
-        ConversationPhase.AWAITING_HELP: (
-            DialogueCall.HELP_SEEN,
-            DialogueCall.HELP_NOT_SEEN,
-            DialogueCall.ABORT,
-        ),
-        ConversationPhase.CLOSED: (),
-    },
-)
 
 _ROBOT_GOES_ON = (Resolution.ROBOT_FINISH, Resolution.COLLAB_FINISH)
 """Once it sees the help, or to take it, the robot moves."""
 
+MOST_LOOKS = 10
+"""So often the robot looks at a helper's word that one promise is kept."""
+
+_KEEPS = "I keep watching"
 _OR_FAILS = "; if I do not see it then, {attempt} has failed, and {later}."
-_SEEN_NOW = {
-    Expectation.AT_PLACE: "I see the {object} at its place now.",
-    Expectation.IN_REACH: "I see the {object} within my reach now.",
-    Expectation.WAY_CLEAR: "I see nothing in my way now.",
-    Expectation.LED_ROUND: "Another way leads round. I take it.",
-    Expectation.VIEW_CLEAR: "I see what is on the table now.",
-    Expectation.LOCATED: "I know where I am now.",
-    Expectation.LOADED: "I feel that my basket is heavier now.",
-    Expectation.UNLOADED: "I feel that my basket is lighter now.",
-    Expectation.CHARGED: "I feel current now.",
-    Expectation.ACCOMPANIED: "I see {person} beside me now.",
-    Expectation.IN_GRIPPER: "I have the {object} between my fingers.",
-}
 
 
 class Conversation:
@@ -117,6 +67,7 @@ class Conversation:
         self._phase = ConversationPhase.NEW
         self._at: AskState | HelpState | ToldState | None = None
         self._reasks_left = 0
+        self._looks_left = 0
 
     @property
     def phase(self) -> ConversationPhase:
@@ -140,9 +91,15 @@ class Conversation:
         """
         return self._script.denied if self._outlook.unchanged == 1 else frozenset()
 
+    @property
+    def looks_at_a_word(self) -> bool:
+        """Whether the robot, told that the help it awaits is done, looks at once."""
+        awaits = self._phase is ConversationPhase.AWAITING_HELP
+        return awaits and isinstance(self._at, HelpState) and self._looks_left > 0
+
     def open(self) -> list[Turn]:
         """Begin."""
-        _CALLS.require(self._phase, DialogueCall.OPEN)
+        CALLS.require(self._phase, DialogueCall.OPEN)
         on_the_way = self._script.on_the_way
         if on_the_way is not None and not self._issue.interrupts:
             return self._enter(on_the_way, heard=False)
@@ -151,15 +108,14 @@ class Conversation:
 
     def answer(self, answer: Literal["yes", "no"]) -> list[Turn]:
         """Take a helper's answer to the open question."""
-        _CALLS.require(self._phase, DialogueCall.ANSWER)
+        CALLS.require(self._phase, DialogueCall.ANSWER)
         match self._at, answer:
             case AskState(yes=following), "yes":
                 return self._enter(following, heard=True)
             case AskState(no=following), "no":
                 return self._enter(following, heard=False)
-            case HelpState(help=promised), "yes":
-                self._phase = ConversationPhase.AWAITING_HELP
-                return [AwaitHelp(promised)]
+            case HelpState() as state, "yes":
+                return [self._await_help(state)]
             case HelpState(otherwise=following), "no":
                 return self._enter(following, heard=False)
         raise ValueError(f"an answer is 'yes' or 'no', not {answer!r}")
@@ -169,20 +125,20 @@ class Conversation:
 
         `at_place`: whoever was to put the object within reach has put it where it is to go.
         """
-        _CALLS.require(self._phase, DialogueCall.HELP_SEEN)
+        CALLS.require(self._phase, DialogueCall.HELP_SEEN)
         if isinstance(self._at, ToldState):
             said = self._word(self._at.thanks)
             return self._settle(CloseReason.RESOLVED, self._at.resolution, said, change)
         state = self._require_help_state(DialogueCall.HELP_SEEN)
         placed = self._script.put_right.get(Expectation.AT_PLACE) if at_place else None
         if state.help is Help.PUT_BACK and placed is not None and change.by_a_person:
-            said = f"Thank you. {self._word(_SEEN_NOW[Expectation.AT_PLACE])}"
+            said = f"Thank you. {self._word(SEEN_NOW[Expectation.AT_PLACE])}"
             return self._settle(CloseReason.RESOLVED, placed, said, change)
         said = state.thanks if change.by_a_person else state.unchanged
         if change is Change.UNKNOWN:
-            said = _SEEN_NOW[EXPECTED[state.help]]
+            said = SEEN_NOW[EXPECTED[state.help]]
         if change is Change.LED_ROUND:
-            said = _SEEN_NOW[Expectation.LED_ROUND]
+            said = SEEN_NOW[Expectation.LED_ROUND]
         said = self._word(said)
         return self._settle(CloseReason.RESOLVED, state.resolution, said, change)
 
@@ -193,9 +149,9 @@ class Conversation:
         nothing could be seen, so that nobody can say whether there was any. That is no failed
         attempt the first time: before the next one the robot asks for its view.
         """
-        _CALLS.require(self._phase, DialogueCall.HELP_NOT_SEEN)
+        CALLS.require(self._phase, DialogueCall.HELP_NOT_SEEN)
         if blind:
-            said = f"{sentence(spoken(blind))} I cannot see whether anybody has helped."
+            said = nothing_could_be_seen(blind)
             if self._outlook.times > 1:
                 return self._give_up(said)
             close = self._close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY)
@@ -208,10 +164,10 @@ class Conversation:
             return self._give_up(self._word(state.given_up))
         self._reasks_left -= 1
         self._phase = ConversationPhase.ASKING
-        keeps = "I keep watching for it ({attempt})"
+        keeps = f"{_KEEPS} for it ({{attempt}})"
         return [
             Ask(
-                text=self._word(state.not_seen if felt is None else _felt(state, felt)),
+                text=self._word(asked_about(state, felt)),
                 yes_effect=self._word(f"{keeps}." if self._reasks_left else keeps + _OR_FAILS),
                 no_effect=self._effect(state.otherwise, state.otherwise_effect),
                 timeout_effect=self._word(ATTEMPT_FAILED),
@@ -220,29 +176,61 @@ class Conversation:
             )
         ]
 
+    def said_done(self) -> list[Turn]:
+        """A helper says that what was promised is done: nothing is said before a look was made.
+
+        Raises `ValueError` where the robot looks by itself alone (`looks_at_a_word`).
+        """
+        CALLS.require(self._phase, DialogueCall.SAID_DONE)
+        if not self.looks_at_a_word:
+            raise ValueError("the robot has looked at a word often enough, or looks already")
+        self._looks_left -= 1
+        self._phase = ConversationPhase.LOOKING_AGAIN
+        return []
+
+    def not_seen_yet(
+        self, felt: Felt | None = None, *, sight: Sight | None = None, blind: str = ""
+    ) -> list[Turn]:
+        """The look at that word did not see the help, which there is still time for.
+
+        `felt` and `blind` as in `help_not_seen`; `sight`: what it saw of the object instead.
+        """
+        CALLS.require(self._phase, DialogueCall.NOT_SEEN_YET)
+        state = self._require_help_state(DialogueCall.NOT_SEEN_YET)
+        self._phase = ConversationPhase.AWAITING_HELP
+        asked = self._word(asked_about(state, felt))
+        said = nothing_could_be_seen(blind) if blind else not_yet(asked, sight)
+        return [Remark(f"{said} {_KEEPS}.")]
+
+    def take_back(self) -> list[Turn]:
+        """Whoever promised the help cannot give it after all: as if they had said no to it."""
+        CALLS.require(self._phase, DialogueCall.TAKE_BACK)
+        assert isinstance(self._at, HelpState | ToldState), "only help is promised"
+        return self._enter(self._at.otherwise, heard=False)
+
     def put_right(self, seen: PutRight) -> list[Turn]:
         """The robot saw the issue put right before anyone answered: withdraw the question.
 
         Raises `ValueError` when the script does not watch for what was seen.
         """
-        _CALLS.require(self._phase, DialogueCall.PUT_RIGHT)
+        CALLS.require(self._phase, DialogueCall.PUT_RIGHT)
         resolution = self._script.put_right.get(seen.seen)
         if resolution is None:
             raise ValueError(f"'{seen.seen}' does not put an issue '{self._issue.kind}' right")
         thanks = "Thank you. " if seen.change.by_a_person else ""
-        said = thanks + self._word(_SEEN_NOW[seen.seen])
+        said = thanks + self._word(SEEN_NOW[seen.seen])
         return self._settle(CloseReason.WITHDRAWN, resolution, said, seen.change)
 
     def silence(self) -> list[Turn]:
         """Nobody answered and nobody is left to ask: go on without an answer, or give up."""
-        _CALLS.require(self._phase, DialogueCall.SILENCE)
+        CALLS.require(self._phase, DialogueCall.SILENCE)
         if isinstance(self._at, AskState) and self._at.unanswered is not None:
             return self._enter(self._at.unanswered, heard=False)
         return self._give_up("I heard no answer.")
 
     def abort(self) -> list[Turn]:
         """The run has ended, or the issue no longer matters."""
-        _CALLS.require(self._phase, DialogueCall.ABORT)
+        CALLS.require(self._phase, DialogueCall.ABORT)
         return [self._close(CloseReason.ABORTED, None)]
 
     # --- Going from state to state ------------------------------------------------------------
@@ -254,9 +242,8 @@ class Conversation:
                 self._at, self._phase = state, ConversationPhase.ASKING
                 return [self._ask(state)]
             case HelpState():
-                self._at, self._phase = state, ConversationPhase.AWAITING_HELP
-                self._reasks_left = self._script.reasks
-                return [Remark(self._word(state.text)), AwaitHelp(state.help)]
+                self._at, self._reasks_left = state, self._script.reasks
+                return [Remark(self._word(state.text)), self._await_help(state)]
             case ToldState(guess=guess):
                 self._at, self._phase = state, ConversationPhase.AWAITING_HELP
                 return [AwaitHelp(Help.TELL_PLACE, self._issue.guesses[guess - 1])]
@@ -270,6 +257,10 @@ class Conversation:
                 helped = heard and resolution in _ROBOT_GOES_ON
                 close = self._close(CloseReason.RESOLVED, resolution, helped=helped)
                 return [Remark(self._word(state.text)), close]
+
+    def _await_help(self, state: HelpState) -> AwaitHelp:
+        self._phase, self._looks_left = ConversationPhase.AWAITING_HELP, MOST_LOOKS
+        return AwaitHelp(state.help)
 
     def _ask(self, state: AskState) -> Ask:
         return Ask(
@@ -350,7 +341,7 @@ class Conversation:
         return Close(reason, resolution, helped, failed)
 
     def _require_help_state(self, call: DialogueCall) -> HelpState:
-        _CALLS.require(self._phase, call)
+        CALLS.require(self._phase, call)
         assert isinstance(self._at, HelpState)
         return self._at
 
@@ -370,8 +361,3 @@ class Conversation:
                 return resolution in _ROBOT_GOES_ON
             case CloseState() | LeaveState():
                 return True
-
-
-def _felt(state: HelpState, felt: Felt) -> str:
-    """What is said of help that was not seen where a basket feels something else."""
-    return state.not_felt.get(felt, state.not_seen)

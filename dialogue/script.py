@@ -61,6 +61,16 @@ class Felt(StrEnum):
     over: something that does not look like it."""
 
 
+class Sight(StrEnum):
+    """What a look saw of the object that was to be somewhere, and was not."""
+
+    NOWHERE = "nowhere"
+    UNMOVED = "unmoved"
+    """Where the first look saw it."""
+    ELSEWHERE = "elsewhere"
+    """Neither there nor where it was to be."""
+
+
 class CloseReason(StrEnum):
     """Why a dialogue ended."""
 
@@ -197,9 +207,10 @@ class HelpState:
 
     `thanks` is said if something was seen to change that only a person can have changed, and
     `unchanged` if it is as promised but was so before; what the robot does next is added to both.
-    While it is not seen, `not_seen` asks whether it still comes, or `not_felt` where the robot
-    feels something else; `otherwise` names the state that follows a no, and `otherwise_effect` says
-    what that will do. `given_up` is said once it has been asked about often enough.
+    While it is not seen, `not_seen` says so and then asks whether it still comes, or `not_felt`
+    where the robot feels something else; `otherwise` names the state that follows a no, and
+    `otherwise_effect` says what that will do. `given_up` is said once it has been asked about often
+    enough.
     """
 
     text: str

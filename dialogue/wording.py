@@ -81,6 +81,14 @@ def _roundly(length_m: float) -> float:
     return _ROUNDED_M * max(round(length_m / _ROUNDED_M), 1)
 
 
+def without_question(text: str) -> str:
+    """What a text states, without the questions at its end; empty if it only asks."""
+    sentences = re.split(r"(?<=[.!?]) ", text)
+    while sentences and sentences[-1].endswith("?"):
+        sentences.pop()
+    return " ".join(sentences)
+
+
 def sentence(clause: str) -> str:
     """A clause as a sentence of its own."""
     return f"{clause[:1].upper()}{clause[1:].rstrip('.')}."

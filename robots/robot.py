@@ -84,7 +84,7 @@ class Robot:
         self._emit_picture: EmitPicture | None = None
         self._activity: Routine[None] | None = None
         self._decided: Routine[None] | None = None
-        self._looking = False
+        self._looker: Subsystem | None = None
         self._calming: Routine[None] | None = None
         self._execution: AnyExecution | None = None
         self._attempts: dict[str, int] = {}
@@ -231,7 +231,7 @@ class Robot:
             self._decided = activity
         except StopIteration:
             if self._activity is activity:
-                self._activity, self._looking = None, False
+                self._activity = self._looker = None
             self._take_waiting()
         except MonitorFailedError as error:
             log.exception("robot %s does nothing any more", self._name)
@@ -376,7 +376,7 @@ class Robot:
             return
         routine = subsystem.look(command_id, look, held, self._report)
         self._drop_look()
-        self._activity, self._looking = self._report_look(routine), True
+        self._activity, self._looker = self._report_look(routine), subsystem
 
     def _report_look(self, routine: Routine[Looked]) -> Routine[None]:
         looked = yield from routine
@@ -387,15 +387,23 @@ class Robot:
         if camera is None:
             known = ", ".join(sorted(self._body.cameras))
             raise CommandError(f"camera '{take.camera}' is unknown; this robot has {known}")
-        if self._emit_picture is not None:
-            jpeg = encode_jpeg(camera.capture().bgr)
-            self._emit_picture(Picture(command=command_id, camera=take.camera, jpeg=jpeg))
+        if self._emit_picture is None:
+            return
+        image, looker = camera.capture(), self._looker
+        self._emit_picture(
+            Picture(
+                command=command_id,
+                camera=take.camera,
+                jpeg=encode_jpeg(image.bgr),
+                detection=None if looker is None else looker.sought_in(take.camera, image),
+            )
+        )
 
     # --- Within -------------------------------------------------------------------------------
 
     @property
     def _executing(self) -> bool:
-        return self._activity is not None and not self._looking
+        return self._activity is not None and self._looker is None
 
     @property
     def _between_floors(self) -> bool:
@@ -420,9 +428,9 @@ class Robot:
         )
 
     def _drop_look(self) -> None:
-        if self._looking:
+        if self._looker is not None:
             self._acting.effector.stop()
-            self._activity, self._looking = None, False
+            self._activity = self._looker = None
 
     def _where(self) -> Any:
         return "neutral" if self._acting.effector.at_rest else "in_place"

@@ -37,6 +37,8 @@ from mend.server.journal.events import (
     AnyEvent,
     DeadlineExtended,
     Event,
+    HelpReported,
+    PromiseTakenBack,
     RunAborted,
     RunFailed,
     RunFinished,
@@ -285,6 +287,16 @@ class MendClient:
         """Give the open question as much time again as it was first put for."""
         path = f"/api/dialogues/{dialogue}/extend"
         return await self._post(path, DeadlineExtended, {"prompt": str(prompt), "helper": helper})
+
+    async def said_done(self, dialogue: UUID, helper: str) -> HelpReported:
+        """Say that the awaited help is done: the robot looks at once, and says what it sees."""
+        path = f"/api/dialogues/{dialogue}/done"
+        return await self._post(path, HelpReported, {"helper": helper})
+
+    async def take_back(self, dialogue: UUID, helper: str) -> PromiseTakenBack:
+        """Take back the promise to help: the dialogue goes on as after a no to it."""
+        path = f"/api/dialogues/{dialogue}/take_back"
+        return await self._post(path, PromiseTakenBack, {"helper": helper})
 
     async def claim(self, dialogue: UUID, helper: str, *, take_over: bool = False) -> DialogueView:
         path = f"/api/dialogues/{dialogue}/claim"

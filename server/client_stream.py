@@ -141,6 +141,14 @@ class EventStream:
         """Give the open question more time; raises as `answer` does."""
         return await self._command(type="extend", dialogue=str(dialogue), prompt=str(prompt))
 
+    async def said_done(self, dialogue: UUID) -> dict[str, Any]:
+        """Say that the awaited help is done; raises as `answer` does."""
+        return await self._command(type="done", dialogue=str(dialogue))
+
+    async def take_back(self, dialogue: UUID) -> dict[str, Any]:
+        """Take back your promise to help; raises as `answer` does."""
+        return await self._command(type="take_back", dialogue=str(dialogue))
+
     async def claim(self, dialogue: UUID, *, take_over: bool = False) -> dict[str, Any]:
         """Show the others that you are on it; raises as `answer` does."""
         return await self._command(type="claim", dialogue=str(dialogue), take_over=take_over)

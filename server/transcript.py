@@ -258,6 +258,15 @@ class Transcript:
         return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
     @lines.register
+    def _(self, event: ev.HelpReported) -> list[Line]:
+        return [_line(event, f"helper ({event.helper})", "says that it is done", Tone.ANSWERED)]
+
+    @lines.register
+    def _(self, event: ev.PromiseTakenBack) -> list[Line]:
+        text = "cannot help after all"
+        return [_line(event, f"helper ({event.helper})", text, Tone.ANSWERED)]
+
+    @lines.register
     def _(self, event: ev.HelpVerified) -> list[Line]:
         how = "feels" if event.help in _FELT else "sees"
         text = f"{how} {_promised(event)}{CHANGES[event.change]}"
@@ -265,11 +274,13 @@ class Transcript:
             text = "sees that another way leads round"
         return [_line(event, self._robot(event.robot), text, Tone.WATCHED)]
 
-    @lines.register
-    def _(self, event: ev.HelpNotSeen) -> list[Line]:
+    @lines.register(ev.HelpNotSeen)
+    @lines.register(ev.HelpNotSeenYet)
+    def _(self, event: ev.UnseenHelp) -> list[Line]:
         how = "feel" if event.help in _FELT else "see"
+        yet = " yet" if isinstance(event, ev.HelpNotSeenYet) else ""
         why = f": {event.blind}" if event.blind else ""
-        text = f"does not {how} {_promised(event)}{why}"
+        text = f"does not {how} {_promised(event)}{yet}{why}"
         return [_line(event, self._robot(event.robot), text, Tone.SETBACK)]
 
     @lines.register
@@ -345,5 +356,5 @@ def _rival(candidate: ev.Candidate) -> str:
     return f"{candidate.name} {candidate.potential:.2f}{failed}"
 
 
-def _promised(event: ev.HelpAwaited | ev.HelpVerified | ev.HelpNotSeen) -> str:
+def _promised(event: ev.HelpAwaited | ev.HelpVerified | ev.UnseenHelp) -> str:
     return PROMISES[event.help].format(object=event.object or event.name)

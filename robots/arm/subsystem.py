@@ -13,12 +13,14 @@ from mend.robots.arm.behaviors.work import Work
 from mend.robots.arm.body import ArmBody
 from mend.robots.arm.command_resolver import CommandResolver
 from mend.robots.arm.looks import Looker, look_as_told
+from mend.robots.arm.looks.shown import detection_of
 from mend.robots.arm.monitors.monitor import ArmView
 from mend.robots.arm.perception import FOREARM, Perception
+from mend.robots.arm.perception.head import HEAD
 from mend.robots.arm.result import JudgedResult
 from mend.robots.arm.shown_arm import ShownArm
 from mend.robots.body import CameraImage
-from mend.robots.catalogue import Catalogue
+from mend.robots.catalogue import Catalogue, Part
 from mend.robots.execution.behavior import Behavior, of_kind
 from mend.robots.execution.execution import AnyExecution
 from mend.robots.execution.execution_state import ExecutionState
@@ -26,6 +28,8 @@ from mend.robots.execution.monitor import AnyMonitor, for_view
 from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
     Avoid,
+    Detection,
+    Location,
     Look,
     Looked,
     MakeWay,
@@ -75,6 +79,7 @@ class ArmSubsystem:
         self._resolver = CommandResolver(self._behaviors, catalogue, model.names)
         self._plans = PlanMemory()
         self._work: Work | None = None
+        self._sought: tuple[Part, Location] | None = None
         self._films = films and FOREARM in body.cameras
         self._shown = ShownArm(body, catalogue, self._perception)
 
@@ -139,6 +144,9 @@ class ArmSubsystem:
         may_move = (held is None or held.step == 0) and not self._perception.hand.holds()
         looker = self._looker(held, report, may_move=may_move, finished=results)
         routine = look_as_told(looker, command, look, self._resolver)
+        self._sought = None
+        if look.expect == "at_place":
+            self._sought = self._resolver.object_of(look), self._resolver.place_of(look)
         return routine if look.expect is None else self._planning_ahead(routine)
 
     def _planning_ahead(self, routine: Routine[Looked]) -> Routine[Looked]:
@@ -147,6 +155,13 @@ class ArmSubsystem:
         if self._work is not None and self._work.progress.state is not ExecutionState.FINISHED:
             plan_ahead(self._work)
         return looked
+
+    def sought_in(self, camera: str, image: CameraImage) -> Detection | None:
+        """The place of what a look waits to see there."""
+        if self._sought is None or camera != HEAD:
+            return None
+        part, target = self._sought
+        return detection_of(self._perception, image, part, None, target)
 
     def glance(self, command: str, held: AnyExecution | None) -> Looked:
         """What the head camera sees now; it judges no results."""

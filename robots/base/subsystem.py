@@ -33,6 +33,7 @@ from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
     Avoid,
     BaseLimits,
+    Detection,
     Driven,
     Location,
     Look,
@@ -166,6 +167,10 @@ class BaseSubsystem:
         execution = BaseExecution(command, "", steps, self.effector, [], report)
         execution.pass_by()
         return execution
+
+    def sought_in(self, camera: str, image: CameraImage) -> Detection | None:  # noqa: ARG002
+        """It looks with its laser, and feels."""
+        return None
 
     def glance(self, command: str, held: AnyExecution | None) -> Looked:  # noqa: ARG002
         """Where it is now."""

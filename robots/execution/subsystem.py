@@ -10,6 +10,7 @@ from mend.robots.execution.routine import Routine
 from mend.robots.link.messages import (
     Avoid,
     BaseLimits,
+    Detection,
     Driven,
     Look,
     Looked,
@@ -107,6 +108,10 @@ class Subsystem(Protocol):
 
     def retreat(self) -> Routine[None]:
         """Go to rest while nothing is executed."""
+        ...
+
+    def sought_in(self, camera: str, image: CameraImage) -> Detection | None:
+        """Where in a camera's picture is to be what its latest look looks for; None if unknown."""
         ...
 
     # --- For people who watch -------------------------------------------------------------------

@@ -61,7 +61,8 @@ class Audit:
 DEEDS: frozenset[str] = frozenset(
     {
         "run_started", "run_paused", "run_resumed", "run_aborted", "intervention_accepted",
-        "answered", "claimed", "released", "deadline_extended",
+        "answered", "claimed", "released", "deadline_extended", "help_reported",
+        "promise_taken_back",
         "document_kept", "document_deleted", "signed_in", "sign_in_failed", "signed_out",
         "access_changed", "site_opened", "site_closed", "node_taken", "request_changed",
         "fleet_told", "errand_begun", "push_subscribed", "push_ended",
@@ -180,6 +181,10 @@ def _what_of_dialogue(event: ev.Event) -> str | None:
             return f"released the claim of '{helper}' ({issue}, '{name}')"
         case ev.DeadlineExtended(issue=issue, name=name, helper=helper):
             return f"took more time as '{helper}' ({issue}, '{name}')"
+        case ev.HelpReported(issue=issue, name=name, helper=helper):
+            return f"said as '{helper}' that the help is done ({issue}, '{name}')"
+        case ev.PromiseTakenBack(issue=issue, name=name, helper=helper):
+            return f"took back the promise of '{helper}' ({issue}, '{name}')"
     return None
 
 

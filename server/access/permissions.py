@@ -94,6 +94,8 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     Endpoint("claim_dialogue", "POST", _DIALOGUE + "/claim", Role.HELPER),
     Endpoint("release_dialogue", "POST", _DIALOGUE + "/release", Role.HELPER),
     Endpoint("extend_deadline", "POST", _DIALOGUE + "/extend", Role.HELPER),
+    Endpoint("say_help_is_done", "POST", _DIALOGUE + "/done", Role.HELPER),
+    Endpoint("take_back_promise", "POST", _DIALOGUE + "/take_back", Role.HELPER),
     Endpoint("get_push", "GET", "/api/push", Role.VIEWER),
     Endpoint("list_push_subscriptions", "GET", _DEVICES, Role.HELPER),
     Endpoint("add_push_subscription", "POST", _DEVICES, Role.HELPER),
@@ -135,6 +137,8 @@ MESSAGES: Mapping[str, Mapping[str, Role | None]] = {
         "claim": Role.HELPER,
         "release": Role.HELPER,
         "extend": Role.HELPER,
+        "done": Role.HELPER,
+        "take_back": Role.HELPER,
     },
     "/ws/live": {"auth": OPEN},
     "/ws/speech": {

@@ -17,7 +17,7 @@ from mend.server.api.services import (
     WithServices,
     helper_of,
 )
-from mend.server.journal.events import Answered, DeadlineExtended
+from mend.server.journal.events import Answered, DeadlineExtended, HelpReported, PromiseTakenBack
 from mend.server.runtime.views import DialogueView
 
 router = APIRouter(prefix="/api/dialogues", tags=["dialogues"], route_class=RepeatableRoute)
@@ -48,6 +48,14 @@ class ClaimRequest(ReleaseRequest):
     """Who is on it; `take_over` takes the claim from another helper."""
 
     take_over: bool = False
+
+
+class WordRequest(BaseModel):
+    """Who says it."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    helper: HelperName | None = None
 
 
 class ExtendRequest(BaseModel):
@@ -118,6 +126,32 @@ async def extend_deadline(
     """Move the open question's deadline by its original length, at most ten times."""
     return await services.runs.dialogues.extend(
         dialogue, body.prompt, helper_of(caller, body.helper), caller.author
+    )
+
+
+@router.post("/{dialogue}/done", operation_id="say_help_is_done", responses=CHANGES)
+async def say_help_is_done(
+    dialogue: DialogueId,
+    body: Annotated[WordRequest, Body(examples=[{"helper": "anna"}])],
+    services: WithServices,
+    caller: WithCaller,
+) -> HelpReported:
+    """Say that the awaited help is done: the robot looks at once, and says what it sees."""
+    return await services.runs.dialogues.said_done(
+        dialogue, helper_of(caller, body.helper), caller.author
+    )
+
+
+@router.post("/{dialogue}/take_back", operation_id="take_back_promise", responses=CHANGES)
+async def take_back_promise(
+    dialogue: DialogueId,
+    body: Annotated[WordRequest, Body(examples=[{"helper": "anna"}])],
+    services: WithServices,
+    caller: WithCaller,
+) -> PromiseTakenBack:
+    """Take back your promise to help: the dialogue goes on as after a no to it."""
+    return await services.runs.dialogues.take_back(
+        dialogue, helper_of(caller, body.helper), caller.author
     )
 
 

@@ -45,7 +45,7 @@ async def _view_of(event: ev.Event, services: Services) -> tuple[int, BaseModel,
             return 201, intervention, None
         case ev.Answered():
             return 201, event, None
-        case ev.DeadlineExtended():
+        case ev.DeadlineExtended() | ev.HelpReported() | ev.PromiseTakenBack():
             return 200, event, None
         case ev.Claimed(dialogue=dialogue) | ev.Released(dialogue=dialogue):
             return 200, await services.runs.dialogues.view(dialogue), None

@@ -60,13 +60,27 @@ class Extend(HelperMessage):
     prompt: UUID
 
 
+class Done(HelperMessage):
+    """Say that the awaited help is done: the robot looks at once."""
+
+    type: Literal["done"]
+    dialogue: UUID
+
+
+class TakeBack(HelperMessage):
+    """Take back your promise to help."""
+
+    type: Literal["take_back"]
+    dialogue: UUID
+
+
 class Ping(HelperMessage):
     """Is anybody there?"""
 
     type: Literal["ping"]
 
 
-AnyClientMessage = Auth | Answer | Claim | Release | Extend | Ping
+AnyClientMessage = Auth | Answer | Claim | Release | Extend | Done | TakeBack | Ping
 
 ClientMessage = Annotated[AnyClientMessage, Field(discriminator="type")]
 

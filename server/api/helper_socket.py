@@ -19,11 +19,13 @@ from mend.server.api.helper_messages import (
     AnyClientMessage,
     Auth,
     Claim,
+    Done,
     Extend,
     Ping,
     Release,
     Result,
     SnapshotMessage,
+    TakeBack,
     TroubleMessage,
     client_message,
 )
@@ -166,6 +168,10 @@ class HelperSocket(HelperConnection[EventsQuery]):
                 done = await runs.dialogues.extend(
                     message.dialogue, message.prompt, helper, self._author
                 )
+            case Done():
+                done = await runs.dialogues.said_done(message.dialogue, helper, self._author)
+            case TakeBack():
+                done = await runs.dialogues.take_back(message.dialogue, helper, self._author)
             case Auth() | Ping():
                 return {}
         return done.model_dump(mode="json")

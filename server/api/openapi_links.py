@@ -40,6 +40,8 @@ OF_DIALOGUE = (
     Link("answer_prompt", DIALOGUE_AGAIN, {**QUESTION, "answer": "yes"}),
     Link("extend_deadline", DIALOGUE_AGAIN, QUESTION),
     Link("claim_dialogue", DIALOGUE_AGAIN, {"helper": "anna"}),
+    Link("say_help_is_done", DIALOGUE_AGAIN, {"helper": "anna"}),
+    Link("take_back_promise", DIALOGUE_AGAIN, {"helper": "anna"}),
     Link("release_dialogue", DIALOGUE_AGAIN, {"helper": "anna"}),
     Link("get_picture", {"picture": "$response.body#/picture"}),
     Link("get_prompt_speech", {**DIALOGUE_AGAIN, "prompt": QUESTION["prompt"]}),
@@ -108,6 +110,8 @@ LINKS: dict[tuple[str, str], tuple[Link, ...]] = {
     ("release_dialogue", "200"): OF_DIALOGUE,
     ("answer_prompt", "201"): (Link("get_dialogue", DIALOGUE_AGAIN),),
     ("extend_deadline", "200"): (Link("get_dialogue", DIALOGUE_AGAIN),),
+    ("say_help_is_done", "200"): (Link("get_dialogue", DIALOGUE_AGAIN),),
+    ("take_back_promise", "200"): (Link("get_dialogue", DIALOGUE_AGAIN),),
 }
 """By the operation and the status of its answer."""
 

@@ -28,6 +28,8 @@ from mend.server.told_events import ToldEvents
 from mend.server.turns import Turns
 from mend.tasks.intervention import Intervention
 
+DETECTION_HEADER = "Mend-Detection"
+
 router = APIRouter(prefix="/api/runs", tags=["runs"], route_class=RepeatableRoute)
 
 Statuses = Annotated[
@@ -37,6 +39,7 @@ Before = Annotated[
     UUID | None, Query(description="Only runs that began before this one: the cursor of a page.")
 ]
 Camera = Annotated[str, Path(pattern=CAMERA, examples=["head", "forearm"])]
+RobotOfRun = Annotated[str | None, Query(max_length=128, description="Whose camera.")]
 
 ToldQuery = Annotated[
     bool, Query(description="With `lines`: what the transcript tells of each event.")
@@ -170,14 +173,29 @@ async def list_events(
     operation_id="get_camera_picture",
     response_class=Response,
     responses={
-        200: {"content": {"image/jpeg": {}}, "description": "The picture."},
+        200: {
+            "content": {"image/jpeg": {}},
+            "description": "The picture.",
+            "headers": {
+                DETECTION_HEADER: {
+                    "description": "While the robot looks for something: where in the picture "
+                    "that is to be, as the JSON of a detection.",
+                    "schema": {"type": "string"},
+                }
+            },
+        },
         **documented(401, 404, 409, 421, 422),
     },
 )
-async def get_camera_picture(run: RunId, camera: Camera, services: WithServices) -> Response:
-    """What a robot's camera sees now."""
-    picture = await services.runs.picture(run, camera)
-    return Response(picture, media_type="image/jpeg", headers={"Cache-Control": "no-store"})
+async def get_camera_picture(
+    run: RunId, camera: Camera, services: WithServices, robot: RobotOfRun = None
+) -> Response:
+    """What a robot's camera sees now; the first that has such a camera, unless `robot` says."""
+    picture = await services.runs.picture(run, camera, robot)
+    headers = {"Cache-Control": "no-store"}
+    if picture.detection is not None:
+        headers[DETECTION_HEADER] = picture.detection.model_dump_json(ensure_ascii=True)
+    return Response(picture.jpeg, media_type="image/jpeg", headers=headers)
 
 
 @router.post(

@@ -10,10 +10,11 @@ from mend.documents.spellings import PHRASE
 from mend.errors import NotFoundError
 from mend.server.api.problems import ProblemError, documented
 from mend.server.api.services import DialogueId, Services, WithServices
-from mend.server.speech.commands import PHRASES, Command
+from mend.server.speech.commands import Command
 from mend.server.speech.ear import NoEars
 from mend.server.speech.phrases import FIXED, effect_text, help_text
 from mend.server.speech.question import find_prompt
+from mend.server.speech.vocabulary import PHRASES_OF, Vocabulary
 from mend.server.speech.voice import NoVoice, VoiceError
 
 router = APIRouter(tags=["speech"])
@@ -51,6 +52,7 @@ class SpeechView(BaseModel):
 async def get_speech(services: WithServices) -> SpeechView:
     """Whether there is a voice and recognition, or why not; and what can be said."""
     texts, ears = services.speech.texts, services.speech.ears
+    said = {**PHRASES_OF[Vocabulary.PROMISE], **PHRASES_OF[Vocabulary.ANSWER]}
     return SpeechView(
         voice=Ability(available=False, why_not=texts.why_not)
         if isinstance(texts, NoVoice)
@@ -59,7 +61,7 @@ async def get_speech(services: WithServices) -> SpeechView:
         if isinstance(ears, NoEars)
         else Ability(available=True, engine=ears.engine),
         phrases=dict(FIXED),
-        commands={command: list(phrases) for command, phrases in PHRASES.items()},
+        commands={command: list(phrases) for command, phrases in said.items()},
     )
 
 

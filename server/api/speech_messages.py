@@ -11,7 +11,7 @@ from mend.server.speech.conversation import EndReason, Saying
 
 
 class Listen(HelperMessage):
-    """Begin a conversation about an open question; one that is going on is replaced."""
+    """Begin a conversation about an open question, or help that is awaited; it replaces another."""
 
     type: Literal["listen"]
     dialogue: UUID

@@ -27,9 +27,10 @@ from mend.server.api.speech_messages import (
 from mend.server.speech import conversation as talking
 from mend.server.speech.conversation import Act, EndReason, Saying, SpokenConversation
 from mend.server.speech.ear import NoEars
-from mend.server.speech.phrases import help_text
-from mend.server.speech.question import open_question, wait_until_over
+from mend.server.speech.phrases import PROMISE_SORRY, SORRY
+from mend.server.speech.question import open_topic, wait_until_over
 from mend.server.speech.talk import Talk
+from mend.server.speech.vocabulary import Vocabulary
 from mend.server.speech.voice import NoVoice
 
 router = APIRouter()
@@ -108,7 +109,7 @@ class SpeechSocket(HelperConnection[HelperQuery]):
             why_not = f"nothing can be recognized: {ears.why_not}"
             await self._refuse(problem(503, why_not), message.id)
             return
-        question = await open_question(self._parts.runs, message.dialogue, message.prompt)
+        topic = await open_topic(self._parts.runs, message.dialogue, message.prompt)
         await self._end(EndReason.REPLACED)
         ears.check_room()
         over = wait_until_over(
@@ -118,12 +119,15 @@ class SpeechSocket(HelperConnection[HelperQuery]):
             message.prompt,
             self._parts.settings.subscriber_queue,
         )
-        aloud = Aloud(message.dialogue, message.prompt, not self._silent)
+        promised = topic.vocabulary is Vocabulary.PROMISE
+        aloud = Aloud(message.dialogue, message.prompt, audible=not self._silent, promised=promised)
+        sorry = PROMISE_SORRY if promised else SORRY
         self._talk = Talk(
-            SpokenConversation(question.text, help_text(question.answers), time.monotonic),
+            SpokenConversation(topic.text, topic.help_text, time.monotonic, sorry),
             ears,
             lambda act: self._send(aloud.message(act)),
             over,
+            topic.vocabulary,
         )
         await self._talk.begin()
 
@@ -142,12 +146,13 @@ class SpeechSocket(HelperConnection[HelperQuery]):
 class Aloud:
     """How the acts of a conversation look on the wire, with the address of each sound."""
 
-    def __init__(self, dialogue: UUID, prompt: UUID, audible: bool) -> None:
+    def __init__(self, dialogue: UUID, prompt: UUID, *, audible: bool, promised: bool) -> None:
         base = f"/api/dialogues/{dialogue}/prompts/{prompt}/speech"
+        fixed = "/api/speech/phrases"
         self._audio = {
             Saying.QUESTION: base,
-            Saying.HELP: f"{base}/help",
-            Saying.SORRY: "/api/speech/phrases/sorry",
+            Saying.HELP: f"{fixed}/promise_help" if promised else f"{base}/help",
+            Saying.SORRY: f"{fixed}/promise_sorry" if promised else f"{fixed}/sorry",
         }
         self._audible = audible
 

@@ -26,6 +26,7 @@ from mend.robots.link.messages import (
     TakePicture,
     Welcome,
 )
+from mend.server.camera_picture import CameraPicture
 from mend.server.journal.journal import DuplicateReceiptError, Entry, Journal, Receipt
 from mend.server.limits import LimitName
 from mend.server.pace import CHARS_OF_ONE
@@ -77,7 +78,7 @@ class KnownRobot:
         self._keeper: RobotSink | None = None
         self._sink_sees_it = False
         self._untaken: OrderedDict[str, Command] = OrderedDict()
-        self._pictures: dict[str, asyncio.Future[bytes]] = {}
+        self._pictures: dict[str, asyncio.Future[CameraPicture]] = {}
         self._received: dict[str, int] = {}
         self._heard_of: set[str] = set()
         self._refused: tuple[str, str] | None = None
@@ -306,14 +307,14 @@ class KnownRobot:
         if self.session is not None and shows:
             self.session.send(ShowPoses(rate_hz=max(self._poses_hz, self._always_hz)))
 
-    async def take_picture(self, camera: str, timeout_s: float) -> bytes:
-        """A camera's picture (JPEG). Raises `NotFoundError` or `ConflictError`."""
+    async def take_picture(self, camera: str, timeout_s: float) -> CameraPicture:
+        """A camera's picture now. Raises `NotFoundError` or `ConflictError`."""
         if self.hello is None or self.session is None:
             raise ConflictError(f"the robot '{self.name}' is not connected")
         if camera not in self.hello.cameras:
             raise NotFoundError(f"the robot '{self.name}' has no camera '{camera}'")
         command_id = str(uuid4())
-        future: asyncio.Future[bytes] = asyncio.get_running_loop().create_future()
+        future: asyncio.Future[CameraPicture] = asyncio.get_running_loop().create_future()
         self._pictures[command_id] = future
         self.session.send(Command(id=command_id, body=TakePicture(camera=camera)))
         try:
@@ -336,7 +337,8 @@ class KnownRobot:
             jpeg = read_jpeg(picture.jpeg)
         except NotJpegError as error:
             raise PictureError(f"the picture of '{picture.camera}' {error}") from error
-        self._answer(picture.command, lambda future: future.set_result(jpeg))
+        taken = CameraPicture(jpeg, picture.detection)
+        self._answer(picture.command, lambda future: future.set_result(taken))
 
     def receive_poses(self, poses: Poses) -> None:
         self.poses = poses
@@ -345,7 +347,9 @@ class KnownRobot:
         if self._sink is not None and self._sink_sees_it:
             self._sink.robot_posed(self.name, poses)
 
-    def _answer(self, command: str, answer: Callable[[asyncio.Future[bytes]], None]) -> None:
+    def _answer(
+        self, command: str, answer: Callable[[asyncio.Future[CameraPicture]], None]
+    ) -> None:
         future = self._pictures.get(command)
         if future is not None and not future.done():
             answer(future)

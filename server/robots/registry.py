@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from mend.errors import ConflictError
 from mend.robots.link.channel import Channel, ChannelClosedError
 from mend.robots.link.messages import PROTOCOL_VERSION, CommandBody, Hello, LinkError, Poses
+from mend.server.camera_picture import CameraPicture
 from mend.server.journal.journal import Journal, JournalClosedError, JournalReadError
 from mend.server.limits import Limits
 from mend.server.pace import Pace
@@ -100,8 +101,8 @@ class RobotRegistry:
         """The newest poses of a robot that sends any."""
         return self._robots[robot].poses if robot in self._robots else None
 
-    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes:
-        """A camera's picture now, as JPEG.
+    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> CameraPicture:
+        """A camera's picture now.
 
         Raises `NotFoundError` if there is no such camera, `ConflictError` if it does not come.
         """

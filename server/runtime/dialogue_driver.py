@@ -1,11 +1,11 @@
 """Keeps a run's open dialogues going: answers, deadlines, escalation, and what looks have seen."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Literal
 from uuid import UUID, uuid4
 
 from mend.dialogue.outlook import Outlook
-from mend.dialogue.script import Ask, Felt, Help, Remark, Turn
+from mend.dialogue.script import Ask, Remark, Turn
 from mend.dialogue.spoken import spoken
 from mend.dialogue.wording import sentence
 from mend.errors import ConflictError, NotFoundError
@@ -21,6 +21,7 @@ from mend.server.dialogues.escalation import (
 )
 from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
+from mend.server.runtime.awaited_help import HelpersWord
 from mend.server.runtime.clock import has_come
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.dialogue_events import DialogueEvents
@@ -35,10 +36,9 @@ from mend.server.runtime.dialogue_state import (
 from mend.server.runtime.outlooks import is_suspect, outlook_at, outlook_now
 from mend.server.runtime.promises import Promises
 from mend.server.runtime.robot_proxy import Purpose, RobotProxy
+from mend.server.runtime.unseen_help import unseen_help
 from mend.tasks.scenario import Person
 
-_SEEN_BY_HEAD = (Help.PLACE, Help.PUT_BACK, Help.CLEAR_WAY)
-"""Help of which a robot whose head camera shows nothing cannot say that there was none."""
 SendMail = Callable[[ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None]
 """Writes to the operators: about a question that nobody answered, or a suspected false alarm."""
 
@@ -60,6 +60,8 @@ class DialogueDriver:
         self._promises = Promises(context, person)
         self._looks = DialogueLooks(context, self._rate)
         self._send_mail = send_mail
+        self.word = HelpersWord(context, self._converse)
+        """What helpers say of help that is awaited."""
 
     # --- What the run calls -------------------------------------------------------------------
 
@@ -319,6 +321,7 @@ class DialogueDriver:
         before: Sequence[ev.Event],
         proxy: RobotProxy,
         helper: str = "",
+        pictures: Mapping[UUID, bytes] | None = None,
     ) -> list[ev.Event]:
         """Commit a call to the conversation: the events before it, and what it says to it."""
         script = self._context.state.scripts[dialogue.raised.issue]
@@ -327,7 +330,7 @@ class DialogueDriver:
         stopped = self._why_it_cannot_go_on(dialogue, proxy)
         waits = dialogue.raised.interrupts
         events = self._of_turns(make, turns, helper, waits=waits, stopped=stopped)
-        return await self._context.commit([*before, *events])
+        return await self._context.commit([*before, *events], pictures=pictures)
 
     def _why_it_cannot_go_on(self, dialogue: DialogueState, proxy: RobotProxy) -> str | None:
         """Why a robot cannot go on with what it was doing when it needed help; None if it can."""
@@ -383,11 +386,14 @@ class DialogueDriver:
             at_place = self._looks.is_at_place(dialogue, proxy)
             verified = make.help_verified(awaiting, change, at_place=at_place)
             await self._converse(dialogue, seen_call(verified), [verified], proxy, dialogue.helper)
-        elif has_come(self._context.clock, awaiting.until):
-            felt = None if proxy.felt is None else Felt(proxy.felt)
-            blind = proxy.blind if awaiting.help in _SEEN_BY_HEAD else None
-            unseen = make.help_not_seen(awaiting, felt, blind)
-            await self._converse(dialogue, call_of(unseen), [unseen], proxy)
+            return
+        over = has_come(self._context.clock, awaiting.until)
+        if not over and dialogue.reported is None:
+            return
+        seen = unseen_help(dialogue, proxy, awaiting.help)
+        make_unseen = make.help_not_seen if over else make.help_not_seen_yet
+        unseen = make_unseen(awaiting, seen)
+        await self._converse(dialogue, call_of(unseen), [unseen], proxy, pictures=seen.pictures)
 
     @property
     def _rate(self) -> float | None:

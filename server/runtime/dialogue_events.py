@@ -2,13 +2,24 @@
 
 from collections.abc import Callable, Sequence
 from datetime import datetime
-from typing import Any
+from typing import Any, Protocol
 from uuid import UUID, uuid4
 
 from mend.dialogue.evidence import Change, LookOutcome
-from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Felt, Remark, Turn
+from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Help, Remark, Turn
 from mend.server.journal import events as ev
+from mend.server.runtime.unseen_help import Unseen
 from mend.tasks.resolution import Resolution
+
+
+class Promised(Protocol):
+    """Help that somebody has promised, and who that was."""
+
+    @property
+    def help(self) -> Help: ...
+
+    @property
+    def helper(self) -> str: ...
 
 
 class DialogueEvents:
@@ -130,10 +141,23 @@ class DialogueEvents:
             **self._fields(), help=awaiting.help, change=change, at_place=at_place
         )
 
-    def help_not_seen(
-        self, awaiting: ev.HelpAwaited, felt: Felt | None, blind: str | None
-    ) -> ev.HelpNotSeen:
-        return ev.HelpNotSeen(**self._fields(), help=awaiting.help, felt=felt, blind=blind)
+    def help_reported(
+        self, awaiting: ev.HelpAwaited, helper: str, author: ev.Author | None
+    ) -> ev.HelpReported:
+        return ev.HelpReported(**self._fields(), help=awaiting.help, helper=helper, author=author)
+
+    def promise_taken_back(
+        self, awaiting: Promised, author: ev.Author | None
+    ) -> ev.PromiseTakenBack:
+        fields = {**self._fields(), "help": awaiting.help, "helper": awaiting.helper}
+        return ev.PromiseTakenBack(**fields, author=author)
+
+    def help_not_seen(self, awaiting: ev.HelpAwaited, unseen: Unseen) -> ev.HelpNotSeen:
+        return ev.HelpNotSeen(**self._fields(), **_told(awaiting, unseen))
+
+    def help_not_seen_yet(self, awaiting: ev.HelpAwaited, unseen: Unseen) -> ev.HelpNotSeenYet:
+        told = _told(awaiting, unseen)
+        return ev.HelpNotSeenYet(**self._fields(), **told, sight=unseen.sight)
 
     def aborted(self) -> ev.DialogueClosed:
         return ev.DialogueClosed(**self._fields(), reason=CloseReason.ABORTED)
@@ -209,6 +233,16 @@ class DialogueEvents:
             reason=reason,
             failed_attempt=failed,
         )
+
+
+def _told(awaiting: ev.HelpAwaited, unseen: Unseen) -> dict[str, Any]:
+    return {
+        "help": awaiting.help,
+        "felt": unseen.felt,
+        "blind": unseen.blind,
+        "picture": unseen.picture,
+        "detection": unseen.detection,
+    }
 
 
 def _why_put_back(close: Close) -> str:

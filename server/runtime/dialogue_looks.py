@@ -42,6 +42,13 @@ HELP_TAKES_S = 10.0
 """So long a helper is given where a look could not tell help that is still to come from none."""
 
 
+AT_A_WORD_S = 2.0
+"""So long a look goes on that is made because somebody says that the help is done,"""
+
+TAKING_S = 5.0
+"""and if it takes something that is held out: the arm may have to go there first."""
+
+
 class DialogueLooks:
     """The looks of one run's dialogues. `rate`: how fast the clock may run meanwhile."""
 
@@ -67,15 +74,16 @@ class DialogueLooks:
         self, dialogue: DialogueState, awaiting: ev.HelpAwaited, proxy: RobotProxy
     ) -> None:
         """Look for promised help, once what was so before has been seen."""
+        until = awaiting.until if dialogue.reported is None else dialogue.reported.time
         first = dialogue.first_look is None
-        by_eye = awaiting.help is not Help.HAND_OVER and self._is_in_time(awaiting.until)
+        by_eye = awaiting.help is not Help.HAND_OVER and self._is_in_time(until)
         looking = proxy.doing is RobotActivity.LOOKING and proxy.purpose in (
             Purpose.BASELINE,
             Purpose.VIEW,
         )
         if (looking and (first or by_eye)) or not (proxy.free or proxy.interruptible):
             return
-        if (first or by_eye) and self._looks_first(dialogue, proxy, awaiting.until):
+        if (first or by_eye) and self._looks_first(dialogue, proxy, until):
             return
         begin = self.help_looked_for_from(dialogue, awaiting)
         if not has_come(self._context.clock, begin):
@@ -91,10 +99,18 @@ class DialogueLooks:
             place=dialogue.raised.place,
             expect=str(EXPECTED[awaiting.help]),
             guess=awaiting.guess,
-            within_s=max(0.0, awaiting.until - self._context.clock.now()),
+            within_s=self._looked_for_s(dialogue, awaiting),
             rate=self._rate,
             finished=_result_of(dialogue),
         )
+
+    def _looked_for_s(self, dialogue: DialogueState, awaiting: ev.HelpAwaited) -> float:
+        """How long one look for help goes on; one at a helper's word is to tell soon."""
+        left_s = max(0.0, awaiting.until - self._context.clock.now())
+        if dialogue.reported is None:
+            return left_s
+        hands_over = awaiting.help is Help.HAND_OVER
+        return min(left_s, TAKING_S if hands_over else AT_A_WORD_S)
 
     def _may_stretch_out(self, dialogue: DialogueState, proxy: RobotProxy) -> bool:
         """Whether no other robot is where it takes the object and places it; then that is its."""
@@ -110,8 +126,11 @@ class DialogueLooks:
     def help_looked_for_from(self, dialogue: DialogueState, awaiting: ev.HelpAwaited) -> float:
         """From when (run's clock) promised help is looked for.
 
-        What is as promised already, or was only felt, gives the helper time to do it first.
+        What is as promised already, or was only felt, gives the helper time to do it first, unless
+        they say that it is done.
         """
+        if dialogue.reported is not None:
+            return dialogue.reported.time
         if awaiting.help in (Help.HAND_OVER, Help.TELL_PLACE):
             return awaiting.time
         felt = dialogue.raised.detection is not None and dialogue.raised.detection.felt

@@ -10,12 +10,17 @@ from uuid import UUID
 from mend.dialogue.conversation import Conversation
 from mend.dialogue.evidence import Change, PutRight
 from mend.dialogue.outlook import Outlook
-from mend.dialogue.script import CloseReason, Expectation, Felt, Script, Turn
+from mend.dialogue.script import CloseReason, Expectation, Felt, Script, Sight, Turn
 from mend.robots.link.messages import BASKET, LASER, Detection
 from mend.server.journal import events as ev
 from mend.tasks.issue import Issue, Sensed
 
+SAID_DONE = "said_done"
+TAKE_BACK = "take_back"
+"""Calls to a conversation, by their names."""
+
 _BLIND = "blind:"
+_NOT_YET_BLIND = "not_yet_blind:"
 MOST_EXTENSIONS = 10
 """So often the deadline of one question may be moved."""
 
@@ -41,6 +46,10 @@ class DialogueState:
     prompts: dict[UUID, ev.Prompt] = field(default_factory=dict)
     answers: dict[UUID, ev.Answered] = field(default_factory=dict)
     awaiting: ev.HelpAwaited | None = None
+    reported: ev.HelpReported | None = None
+    """Who says that the awaited help is done, until the look that follows has told."""
+    last_unseen: ev.UnseenHelp | None = None
+    """The latest look that did not see promised help."""
     claim: Lease | None = None
     claims: int = 0
     """How often it was claimed so far, renewals included."""
@@ -115,7 +124,7 @@ class DialogueState:
         if event.kind == "ask":
             self.asked = event
             self.asked_for_s = None if event.deadline is None else event.deadline - event.time
-            self.awaiting = None
+            self.awaiting = self.reported = None
 
     @_apply.register
     def _(self, event: ev.DeadlineExtended) -> None:
@@ -158,12 +167,28 @@ class DialogueState:
 
     @_apply.register
     def _(self, event: ev.HelpVerified) -> None:
-        self.awaiting = None
+        self.awaiting = self.reported = None
         self.advance(seen_call(event))
 
     @_apply.register
+    def _(self, event: ev.HelpReported) -> None:
+        self.reported = event
+        self.advance(SAID_DONE)
+
+    @_apply.register
+    def _(self, event: ev.HelpNotSeenYet) -> None:
+        self.reported, self.last_unseen = None, event
+        self.advance(call_of(event))
+
+    @_apply.register
+    def _(self, _event: ev.PromiseTakenBack) -> None:
+        self.awaiting = self.reported = None
+        self.advance(TAKE_BACK)
+
+    @_apply.register
     def _(self, event: ev.HelpNotSeen) -> None:
-        self.awaiting = None
+        self.awaiting = self.reported = None
+        self.last_unseen = event
         self.advance(call_of(event))
 
     @_apply.register
@@ -173,7 +198,7 @@ class DialogueState:
     @_apply.register
     def _(self, event: ev.DialogueClosed) -> None:
         self.closed = event.reason
-        self.awaiting = None
+        self.awaiting = self.reported = None
         self.claim = None
 
 
@@ -182,20 +207,28 @@ def seen_call(event: ev.HelpVerified) -> str:
     return f"seen:{event.change}" + (":at_place" if event.at_place else "")
 
 
-def call_of(event: ev.HelpNotSeen) -> str:
-    """The call that tells a conversation of help that was not seen."""
+def call_of(event: ev.HelpNotSeen | ev.HelpNotSeenYet) -> str:
+    """The call that tells a conversation of help that was not seen, in time or yet."""
+    if isinstance(event, ev.HelpNotSeenYet):
+        if event.blind is not None:
+            return _NOT_YET_BLIND + event.blind
+        return f"not_yet:{event.felt or ''}:{event.sight or ''}"
     if event.blind is not None:
         return _BLIND + event.blind
     return "not_seen" if event.felt is None else f"not_seen:{event.felt}"
 
 
 def converse(conversation: Conversation, call: str) -> list[Turn]:
-    """Make a call by its name: `open`, `yes`, `no`, `not_seen`, `silence`, `abort`.
+    """Make a call by its name: `open`, `yes`, `no`, `not_seen`, `said_done`, `silence`, `abort`.
 
     Some have arguments: `seen:moved` (a change; `seen:moved:at_place`, where it is at its place),
     `put_right:at_place:moved` (what is seen, too),
-    `not_seen:lighter` (what a basket felt) and `blind:the picture is black` (why nothing was seen).
+    `not_seen:lighter` (what a basket felt), `blind:the picture is black` (why nothing was seen),
+    `not_yet:lighter:unmoved` (felt, and seen of the object; either may be empty) and
+    `not_yet_blind:the picture is black`.
     """
+    if call.startswith(_NOT_YET_BLIND):
+        return conversation.not_seen_yet(blind=call.removeprefix(_NOT_YET_BLIND))
     if call.startswith(_BLIND):
         return conversation.help_not_seen(blind=call.removeprefix(_BLIND))
     verb, *arguments = call.split(":")
@@ -204,6 +237,10 @@ def converse(conversation: Conversation, call: str) -> list[Turn]:
             return conversation.answer("yes" if verb == "yes" else "no")
         case "not_seen", [felt]:
             return conversation.help_not_seen(Felt(felt))
+        case "not_yet", [felt, sight]:
+            return conversation.not_seen_yet(
+                Felt(felt) if felt else None, sight=Sight(sight) if sight else None
+            )
         case "seen", [change, "at_place"]:
             return conversation.help_seen(Change(change), at_place=True)
         case "seen", [change]:
@@ -213,6 +250,8 @@ def converse(conversation: Conversation, call: str) -> list[Turn]:
     calls = {
         "open": conversation.open,
         "not_seen": conversation.help_not_seen,
+        SAID_DONE: conversation.said_done,
+        TAKE_BACK: conversation.take_back,
         "silence": conversation.silence,
         "abort": conversation.abort,
     }

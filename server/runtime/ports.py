@@ -6,6 +6,7 @@ from typing import Any, Literal, Protocol
 from uuid import UUID
 
 from mend.robots.link.messages import Hello
+from mend.server.camera_picture import CameraPicture
 from mend.server.runtime.clock import RunClock, WallClock
 from mend.server.runtime.hardware import Hardware
 from mend.server.runtime.pose_sink import PoseSink
@@ -49,7 +50,9 @@ class Robots(CommandSender, Protocol):
 
     def unassign(self, robot: str) -> None: ...
 
-    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes: ...
+    async def take_picture(
+        self, robot: str, camera: str, timeout_s: float = 2.0
+    ) -> CameraPicture: ...
 
     def hello(self, robot: str) -> Hello | None: ...
 

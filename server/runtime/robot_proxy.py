@@ -1,5 +1,6 @@
 """One robot of a run, as the run sees it: what it was last told, and what it last saw."""
 
+import logging
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,8 +11,10 @@ from uuid import uuid4
 from shapely.geometry.base import BaseGeometry
 
 from mend.robots.arm.shared_space import Flat
+from mend.robots.link.jpeg import NotJpegError, read_jpeg
 from mend.robots.link.messages import (
     CommandBody,
+    Detection,
     Driven,
     FeltLoad,
     FinishedResult,
@@ -35,6 +38,8 @@ from mend.server.runtime.team import EVERYWHERE, Team
 from mend.tasks.frames import Frame
 from mend.tasks.intervention import Intervention
 from mend.tasks.potential import Point
+
+log = logging.getLogger(__name__)
 
 
 class RobotActivity(StrEnum):
@@ -122,6 +127,10 @@ class RobotProxy:
     """Why the last look saw nothing of the table."""
     felt: FeltLoad | None = None
     """What its basket felt at the last look, where that was not what was looked for."""
+    jpeg: bytes | None = None
+    """What the camera showed at the last look, where that did not see what it looked for,"""
+    detection: Detection | None = None
+    """and where in that picture the object was, and was to be."""
     led_round: bool = False
     """Whether the last look saw that another way leads round what is in the way."""
 
@@ -213,6 +222,11 @@ class RobotProxy:
             fields["finished"] = [*fields.get("finished", ()), *self.finished]
         self._tell(RobotActivity.LOOKING, str(uuid4()), Look(**fields))
 
+    def give_up_look(self) -> None:
+        """Whatever it is told next replaces the look for help that is under way."""
+        if self.doing is RobotActivity.LOOKING and self.purpose in (Purpose.HELP, Purpose.VIEW):
+            self.doing = RobotActivity.IDLE
+
     def looked_just_now(self, now: float) -> bool:
         """Whether what it saw and judged last still holds."""
         return self.looked_at is not None and now - self.looked_at <= FRESH_S
@@ -282,6 +296,7 @@ class RobotProxy:
             self.seen_at = time
             self.last_seen |= {name: (time, each) for name, each in self.seen.items()}
         self.held, self.felt = looked.held, looked.felt
+        self.jpeg, self.detection = _shown_at(looked), looked.detection
         self.led_round = looked.led_round
         self.there = frozenset(looked.there)
         self.gripper = (
@@ -294,6 +309,17 @@ class RobotProxy:
         if self.purpose in JUDGING:
             self.looked_at = time
         return self.purpose
+
+
+def _shown_at(looked: Looked) -> bytes | None:
+    """The picture that a look came with; None where there is none that anybody could look at."""
+    if looked.jpeg is None:
+        return None
+    try:
+        return read_jpeg(looked.jpeg)
+    except NotJpegError as error:
+        log.warning("a robot's picture %s", error)
+        return None
 
 
 def _in_scene(frame: Frame, seen: Mapping[str, Sighting]) -> dict[str, Sighting]:

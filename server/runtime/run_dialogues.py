@@ -79,6 +79,26 @@ class RunDialogues:
         extended = await run.request(lambda: run.dialogues.extend(found, prompt, helper, author))
         return cast(ev.DeadlineExtended, extended)
 
+    async def said_done(
+        self, dialogue: UUID, helper: str, author: ev.Author | None = None
+    ) -> ev.HelpReported:
+        """Somebody says that awaited help is done. Raises `NotFoundError` or `ConflictError`."""
+        found = await self._put_to_people(dialogue)
+        run = await self._running(found.opened.run)
+        proxy = run.proxies[found.opened.robot]
+        said = await run.request(lambda: run.dialogues.word.said_done(found, helper, proxy, author))
+        return cast(ev.HelpReported, said)
+
+    async def take_back(
+        self, dialogue: UUID, helper: str, author: ev.Author | None = None
+    ) -> ev.PromiseTakenBack:
+        """Take a promise back. Raises `NotFoundError` or `ConflictError`."""
+        found = await self._put_to_people(dialogue)
+        run = await self._running(found.opened.run)
+        proxy = run.proxies[found.opened.robot]
+        done = await run.request(lambda: run.dialogues.word.take_back(found, helper, proxy, author))
+        return cast(ev.PromiseTakenBack, done)
+
     async def claim(
         self,
         dialogue: UUID,

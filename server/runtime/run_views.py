@@ -23,6 +23,7 @@ from mend.server.runtime.views import (
     RunStatus,
     RunSummary,
     RunView,
+    UnseenHelpView,
 )
 from mend.server.turns import Turns
 from mend.tasks.activation import FullEvaluation
@@ -191,6 +192,7 @@ def dialogue_view(dialogue: DialogueState) -> DialogueView:
         clip=dialogue.clip,
         detection=dialogue.raised.detection,
         help=None if dialogue.closed else _awaited_help(dialogue),
+        unseen_help=_unseen_help(dialogue),
     )
 
 
@@ -221,4 +223,18 @@ def _awaited_help(dialogue: DialogueState) -> AwaitedHelp | None:
     awaited = dialogue.awaiting
     if awaited is None:
         return None
-    return AwaitedHelp(help=awaited.help, helper=awaited.helper, until=awaited.until)
+    return AwaitedHelp(
+        help=awaited.help,
+        helper=awaited.helper,
+        until=awaited.until,
+        within_s=awaited.until - awaited.time,
+        reported_by=None if dialogue.reported is None else dialogue.reported.helper,
+        at_a_word=awaited.guess is None,
+    )
+
+
+def _unseen_help(dialogue: DialogueState) -> UnseenHelpView | None:
+    unseen = dialogue.last_unseen
+    if unseen is None or unseen.picture is None:
+        return None
+    return UnseenHelpView(time=unseen.time, picture=unseen.picture, detection=unseen.detection)

@@ -13,6 +13,7 @@ import numpy as np
 
 from mend.dialogue.script import Script
 from mend.errors import ConflictError, NotFoundError, UnreadableError, WrongInputError
+from mend.server.camera_picture import CameraPicture
 from mend.server.dialogues.answers import answer_source
 from mend.server.dialogues.escalation import EscalationPolicy
 from mend.server.errors import BusyError
@@ -402,13 +403,15 @@ class Runtime:
         _check_intervention(state.scene, intervention)
         await running.request(lambda: running.intervene(intervention, author))
 
-    async def picture(self, run: UUID, camera: str) -> bytes:
-        """A camera's picture now, as JPEG. Raises `NotFoundError` or `ConflictError`."""
+    async def picture(self, run: UUID, camera: str, robot: str | None = None) -> CameraPicture:
+        """A camera's picture now. Raises `NotFoundError` or `ConflictError`."""
         running = await self._running(run)
-        for robot, proxy in running.proxies.items():
-            if proxy.hello is not None and camera in proxy.hello.cameras:
-                return await self._robots.take_picture(robot, camera)
-        raise NotFoundError(f"no robot of this run has a camera '{camera}'")
+        for name, proxy in running.proxies.items():
+            asked = robot in (None, name)
+            if asked and proxy.hello is not None and camera in proxy.hello.cameras:
+                return await self._robots.take_picture(name, camera)
+        whose = "no robot of this run" if robot is None else f"no robot '{robot}' of this run"
+        raise NotFoundError(f"{whose} has a camera '{camera}'")
 
     # --- Robots -------------------------------------------------------------------------------
 

@@ -4,7 +4,14 @@ from collections.abc import Mapping
 from typing import Literal, Protocol
 from uuid import UUID
 
-from mend.server.journal.events import Answered, Author, DeadlineExtended
+from mend.server.camera_picture import CameraPicture
+from mend.server.journal.events import (
+    Answered,
+    Author,
+    DeadlineExtended,
+    HelpReported,
+    PromiseTakenBack,
+)
 from mend.server.journal.run_index import RunPage
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import (
@@ -54,6 +61,18 @@ class DialogueService(Protocol):
         self, dialogue: UUID, prompt: UUID, helper: str, author: Author | None = None
     ) -> DeadlineExtended:
         """Move the open question's deadline by its original length. Raises `ConflictError`."""
+        ...
+
+    async def said_done(
+        self, dialogue: UUID, helper: str, author: Author | None = None
+    ) -> HelpReported:
+        """Somebody says that awaited help is done: the robot looks. Raises `ConflictError`."""
+        ...
+
+    async def take_back(
+        self, dialogue: UUID, helper: str, author: Author | None = None
+    ) -> PromiseTakenBack:
+        """Who promised awaited help cannot give it after all. Raises `ConflictError`."""
         ...
 
     async def claim(
@@ -133,8 +152,8 @@ class RunService(Protocol):
         """Have a person do something in a simulated world. Raises `ConflictError` if it cannot."""
         ...
 
-    async def picture(self, run: UUID, camera: str) -> bytes:
-        """A camera's picture now, as JPEG."""
+    async def picture(self, run: UUID, camera: str, robot: str | None = None) -> CameraPicture:
+        """A camera's picture now; of the run's first robot that has one, unless it is named."""
         ...
 
     def robots(self) -> list[RobotView]: ...

@@ -66,11 +66,26 @@ class PromptView(View):
 
 
 class AwaitedHelp(View):
-    """Physical help that `helper` promised; the robot watches until `until` (the run's clock)."""
+    """Physical help that `helper` promised; the robot watches until `until` (the run's clock).
+
+    `within_s`: how long it was to watch. `reported_by`: who has said that it is done, while the
+    robot looks whether it is. `at_a_word`: whether it would look at once if somebody said so.
+    """
 
     help: Help
     helper: str
     until: float
+    within_s: float = 0.0
+    reported_by: str | None = None
+    at_a_word: bool = True
+
+
+class UnseenHelpView(View):
+    """What a camera showed when promised help was last not seen (`time`: the run's clock)."""
+
+    time: float
+    picture: UUID
+    detection: Detection | None
 
 
 class DialogueView(View):
@@ -101,6 +116,7 @@ class DialogueView(View):
     detection: Detection | None = None
     """What the monitor saw in `picture`."""
     help: AwaitedHelp | None = None
+    unseen_help: UnseenHelpView | None = None
 
 
 class RunResult(View):

@@ -12,6 +12,10 @@ class Command(StrEnum):
     REPEAT = "repeat"
     HELP = "help"
     STOP = "stop"
+    DONE = "done"
+    """What was promised is done."""
+    CANNOT = "cannot"
+    """It cannot be done after all."""
 
 
 PHRASES: Mapping[Command, tuple[str, ...]] = {
@@ -110,8 +114,3 @@ AMBIGUOUS: tuple[str, ...] = (
     "go on", "i can hear you", "i say", "they say", "he said", "she said", "do you",
 )  # fmt: skip
 """Phrases that are near to a command in sound or words, and must not be taken for one."""
-
-
-def phrase_commands() -> dict[str, Command]:
-    """Every phrase with its command."""
-    return {phrase: command for command, phrases in PHRASES.items() for phrase in phrases}

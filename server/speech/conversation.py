@@ -32,7 +32,7 @@ class EndReason(StrEnum):
     """Why a conversation ended."""
 
     HEARD = "heard"
-    """Yes, no or stop."""
+    """Yes, no, stop, done or that it cannot be."""
     GAVE_UP = "gave_up"
     CANCELLED = "cancelled"
     REPLACED = "replaced"
@@ -130,11 +130,13 @@ class SpokenConversation:
     `IllegalTransitionError`. `now_s` is a clock that never goes back.
     """
 
-    def __init__(self, question: str, help_text: str, now_s: Callable[[], float]) -> None:
+    def __init__(
+        self, question: str, help_text: str, now_s: Callable[[], float], sorry: str = SORRY
+    ) -> None:
         self._texts = {
             Saying.QUESTION: question,
             Saying.HELP: help_text,
-            Saying.SORRY: SORRY,
+            Saying.SORRY: sorry,
         }
         self._now_s = now_s
         self._state = State.NEW
@@ -187,7 +189,7 @@ class SpokenConversation:
         _CALLS.require(self._state, SpokenCall.UTTERANCE)
         heard = Understood(command, phrase, latency_s)
         match command:
-            case Command.YES | Command.NO | Command.STOP:
+            case Command.YES | Command.NO | Command.STOP | Command.DONE | Command.CANNOT:
                 return [heard, *self._end(EndReason.HEARD)]
             case Command.REPEAT:
                 return [heard, *self._say(Saying.QUESTION)]

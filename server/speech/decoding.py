@@ -19,8 +19,10 @@ from mend.server.speech.language_model import (
     COMMAND_MARK,
     Weights,
     command_in,
+    name,
     write_language_model,
 )
+from mend.server.speech.vocabulary import Vocabulary, phrase_commands
 
 Cepstrum = npt.NDArray[np.float64]
 
@@ -88,11 +90,14 @@ class Decoder(Protocol):
 class SphinxDecoder:
     """PocketSphinx with a language model of one's own."""
 
-    def __init__(self, weights: Weights | None = None) -> None:
+    def __init__(
+        self, weights: Weights | None = None, vocabulary: Vocabulary = Vocabulary.ANSWER
+    ) -> None:
+        self._vocabulary = vocabulary
         model = Path(pocketsphinx.get_model_path("en-us"))
         with TemporaryDirectory(prefix="mend-speech-") as folder:
             dictionary, language_model = write_language_model(
-                Path(folder), model / "cmudict-en-us.dict", weights
+                Path(folder), model / "cmudict-en-us.dict", weights, vocabulary
             )
             self._search = pocketsphinx.Decoder(
                 hmm=str(model / "en-us"),
@@ -106,7 +111,7 @@ class SphinxDecoder:
             self._front = pocketsphinx.Decoder(
                 hmm=str(model / "en-us"),
                 dict=str(dictionary),
-                keyphrase=COMMAND_MARK + "no",
+                keyphrase=COMMAND_MARK + name(next(iter(phrase_commands(vocabulary)))),
                 lm=None,
                 loglevel="FATAL",
             )
@@ -138,7 +143,7 @@ class SphinxDecoder:
         if found is None:
             return Hypothesis("")
         words = str(found.hypstr)
-        known = command_in(words)
+        known = command_in(words, self._vocabulary)
         if known is None:
             return Hypothesis(words)
         command, phrase = known
@@ -180,7 +185,7 @@ class SphinxDecoder:
             score = math.log(reading.score)
             first = score if first is None else first
             if abs(score - first) < OTHER_SCALE:
-                meant = command_in(_without_breaths(reading.hypstr))
+                meant = command_in(_without_breaths(reading.hypstr), self._vocabulary)
                 same = meant is not None and meant[0] is command
                 (ours if same else others).append(score)
         if not others:

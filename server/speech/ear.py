@@ -9,7 +9,7 @@ import struct
 import sys
 import time
 from asyncio.subprocess import PIPE, Process
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -19,6 +19,7 @@ from pydantic import BaseModel, ConfigDict
 
 from mend.errors import MendError, UnavailableError
 from mend.server.speech.commands import Command
+from mend.server.speech.vocabulary import Vocabulary
 
 log = logging.getLogger(__name__)
 
@@ -27,15 +28,16 @@ MAX_BACKLOG_BYTES = 5 * 32_000
 """Five seconds of sound; an ear so far behind has lost the conversation."""
 
 MOST_KEPT = 2
-"""Each takes about 80 MB."""
+"""Each takes about 80 MB, and more once it has heard of promises."""
 
 HEADER = struct.Struct("<dI")
 """Before each piece of sound: when it came (monotonic seconds), and its bytes."""
 
 BREAK = 0
 """Instead of a number of bytes: what came before does not belong to what comes next."""
-AFRESH = 2**32 - 1
-"""Instead of a number of bytes: another conversation begins; it is `ready` then."""
+AFRESH: Mapping[Vocabulary, int] = {Vocabulary.ANSWER: 2**32 - 1, Vocabulary.PROMISE: 2**32 - 2}
+"""Instead of a number of bytes: another conversation begins with that vocabulary; it is `ready`
+then."""
 
 
 class EarLostError(MendError):
@@ -91,7 +93,7 @@ class Ears(Protocol):
         """Raises `TooManyConversationsError` when there can be no further ear now."""
         ...
 
-    async def open(self) -> Ear:
+    async def open(self, vocabulary: Vocabulary = Vocabulary.ANSWER) -> Ear:
         """A new ear that is ready. Raises `TooManyConversationsError`, `EarLostError`."""
         ...
 
@@ -137,11 +139,11 @@ class ProcessEars:
                 f"{self._at_once} spoken conversations are going on already: answer by button"
             )
 
-    async def open(self) -> Ear:
+    async def open(self, vocabulary: Vocabulary = Vocabulary.ANSWER) -> Ear:
         self.check_room()
         self._taken += 1
         try:
-            return ProcessEar(await self._ready_process(), self._give_back)
+            return ProcessEar(await self._ready_process(vocabulary), self._give_back)
         except BaseException:
             self._taken -= 1
             raise
@@ -153,16 +155,16 @@ class ProcessEars:
         for process in kept:
             await process.stop()
 
-    async def _ready_process(self) -> "RecognizerProcess":
+    async def _ready_process(self, vocabulary: Vocabulary) -> "RecognizerProcess":
         while self._kept:
             process = self._kept.pop()
             try:
-                await process.begin_afresh()
+                await process.begin_afresh(vocabulary)
             except EarLostError:
                 log.warning("a recognizer that was kept has gone; another is started")
             else:
                 return process
-        return await RecognizerProcess.start()
+        return await RecognizerProcess.start(vocabulary)
 
     async def _give_back(self, process: "RecognizerProcess") -> None:
         self._taken -= 1
@@ -210,11 +212,11 @@ class RecognizerProcess:
         self._to, self._from = process.stdin, process.stdout
 
     @classmethod
-    async def start(cls) -> Self:
+    async def start(cls, vocabulary: Vocabulary = Vocabulary.ANSWER) -> Self:
         """Start one; returns when it is ready. Raises `EarLostError`."""
         process = await asyncio.create_subprocess_exec(
             # -P: nothing is imported from wherever the service was started.
-            sys.executable, "-P", "-m", "mend.server.speech.ear_process",
+            sys.executable, "-P", "-m", "mend.server.speech.ear_process", vocabulary,
             stdin=PIPE, stdout=PIPE,
         )  # fmt: skip
         started = cls(process)
@@ -230,9 +232,9 @@ class RecognizerProcess:
         """How much of what was sent it has not taken yet."""
         return self._to.transport.get_write_buffer_size()
 
-    async def begin_afresh(self) -> None:
+    async def begin_afresh(self, vocabulary: Vocabulary) -> None:
         """Forget the conversation that it was part of. Raises `EarLostError`."""
-        self.send(AFRESH)
+        self.send(AFRESH[vocabulary])
         await self._wait_until_ready()
 
     def send(self, size: int, pcm: bytes = b"") -> None:

@@ -7,11 +7,15 @@ import os
 import signal
 import sys
 import time
+from functools import cache
 from typing import BinaryIO
 
 from mend.server.speech.decoding import SphinxDecoder
 from mend.server.speech.ear import AFRESH, BREAK, HEADER, EarReport
 from mend.server.speech.recognizer import Heard, Recognizer, SpeechBegan
+from mend.server.speech.vocabulary import Vocabulary
+
+_VOCABULARIES = {code: vocabulary for vocabulary, code in AFRESH.items()}
 
 
 def main() -> None:
@@ -21,26 +25,31 @@ def main() -> None:
     sound, reports = sys.stdin.buffer, os.fdopen(os.dup(1), "wb", buffering=0)
     # Whatever a library prints must not come between the reports.
     os.dup2(2, 1)
-    decoder = SphinxDecoder()
-    while _converse(Recognizer(decoder), sound, reports):
-        pass
+    vocabulary: Vocabulary | None = Vocabulary(sys.argv[1])
+    while vocabulary is not None:
+        vocabulary = _converse(Recognizer(_decoder_of(vocabulary)), sound, reports)
 
 
-def _converse(recognizer: Recognizer, sound: BinaryIO, reports: BinaryIO) -> bool:
-    """Listen to one conversation; whether another begins."""
+@cache
+def _decoder_of(vocabulary: Vocabulary) -> SphinxDecoder:
+    return SphinxDecoder(vocabulary=vocabulary)
+
+
+def _converse(recognizer: Recognizer, sound: BinaryIO, reports: BinaryIO) -> Vocabulary | None:
+    """Listen to one conversation; the vocabulary of the next, None if there is none."""
     _tell(reports, EarReport(kind="ready"))
     interruptions = 0
     while header := sound.read(HEADER.size):
         came_s, size = HEADER.unpack(header)
-        if size == AFRESH:
-            return True
+        if size in _VOCABULARIES:
+            return _VOCABULARIES[size]
         if size == BREAK:
             recognizer.interrupt()
             interruptions += 1
             continue
         for heard in recognizer.feed(sound.read(size)):
             _tell(reports, report_of(heard, time.monotonic() - came_s, interruptions))
-    return False
+    return None
 
 
 def report_of(heard: Heard, since_sound_s: float, interruptions: int) -> EarReport:

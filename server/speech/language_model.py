@@ -10,7 +10,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from mend.server.speech.commands import AMBIGUOUS, Command, phrase_commands
+from mend.server.speech.commands import Command
+from mend.server.speech.vocabulary import AMBIGUOUS_OF, Vocabulary, phrase_commands
 
 COMMON_WORDS = Path(__file__).with_name("common_words.txt")
 
@@ -67,7 +68,10 @@ class Weights:
 
 
 def write_language_model(
-    folder: Path, dictionary: Path, weights: Weights | None = None
+    folder: Path,
+    dictionary: Path,
+    weights: Weights | None = None,
+    vocabulary: Vocabulary = Vocabulary.ANSWER,
 ) -> tuple[Path, Path]:
     """Write a dictionary and an ARPA bigram model to a folder; returns their paths.
 
@@ -75,9 +79,10 @@ def write_language_model(
     """
     chosen = weights or Weights()
     spoken = Pronunciations(dictionary)
-    competitors = _competitors(chosen.competitors)
-    phrases = {COMMAND_MARK + name(each): each for each in phrase_commands()}
-    decoys = {DECOY_MARK + name(each): each for each in AMBIGUOUS}
+    known = phrase_commands(vocabulary)
+    competitors = _competitors(chosen.competitors, known)
+    phrases = {COMMAND_MARK + name(each): each for each in known}
+    decoys = {DECOY_MARK + name(each): each for each in AMBIGUOUS_OF[vocabulary]}
     dict_path, lm_path = folder / "commands.dict", folder / "commands.lm"
     lines = [
         line
@@ -94,10 +99,12 @@ def name(phrase: str) -> str:
     return phrase.replace(" ", "_")
 
 
-def command_in(hypothesis: str) -> tuple[Command, str] | None:
+def command_in(
+    hypothesis: str, vocabulary: Vocabulary = Vocabulary.ANSWER
+) -> tuple[Command, str] | None:
     """The command and phrase of an utterance, if it is nothing but that command."""
     words = [word.partition("(")[0] for word in hypothesis.split()]
-    known = phrase_commands()
+    known = phrase_commands(vocabulary)
     phrases = [word[len(COMMAND_MARK) :].replace("_", " ") for word in words]
     if not words or not all(word.startswith(COMMAND_MARK) for word in words):
         return None
@@ -123,9 +130,9 @@ class Pronunciations:
         return [" ".join(way) for way in itertools.islice(ways, MAX_PRONUNCIATIONS)]
 
 
-def _competitors(count: int) -> dict[str, float]:
-    """The commonest words with their probabilities, which add up to 1."""
-    single = {each for each in phrase_commands() if " " not in each}
+def _competitors(count: int, phrases: Iterable[str]) -> dict[str, float]:
+    """The commonest words but `phrases`, with their probabilities, which add up to 1."""
+    single = {each for each in phrases if " " not in each}
     found: dict[str, float] = {}
     for line in COMMON_WORDS.read_text().splitlines():
         word, _, log10 = line.partition(" ")

@@ -6,9 +6,17 @@ from mend.server.journal.events import AnswerOption
 
 SORRY = "Sorry, please say yes or no."
 
+PROMISE_SORRY = "Sorry, please say done, or I can't."
+PROMISE_HELP = (
+    "If you say done, I look again. If you say I can't, you take your promise back. "
+    "You can also say: repeat, or stop."
+)
+
 FIXED: Mapping[str, str] = {
     "sorry": SORRY,
     "commands": "You can say yes or no. You can also say: repeat, help, or stop.",
+    "promise_sorry": PROMISE_SORRY,
+    "promise_help": PROMISE_HELP,
     "buttons": "I did not understand. Please use the buttons.",
 }
 """By the name under which their sound is served."""

@@ -1,6 +1,7 @@
-"""The question that a conversation is about: finding it, and noticing that it is over."""
+"""What a conversation is about, a question or a promise: finding it, and noticing its end."""
 
 from collections.abc import AsyncIterator
+from dataclasses import dataclass
 from uuid import UUID
 
 from mend.errors import ConflictError, NotFoundError
@@ -17,6 +18,8 @@ from mend.server.journal.subscriptions import PrunedEventsError, SubscriptionOve
 from mend.server.runtime.service import RunService
 from mend.server.runtime.views import PromptView
 from mend.server.speech.conversation import EndReason
+from mend.server.speech.phrases import PROMISE_HELP, help_text
+from mend.server.speech.vocabulary import Vocabulary
 
 PAGE = 500
 
@@ -50,14 +53,28 @@ async def _events_of(journal: Journal, run: UUID, dialogue: UUID) -> AsyncIterat
         after = records[-1].seq
 
 
-async def open_question(runs: RunService, dialogue: UUID, prompt: UUID) -> PromptView:
-    """The open question of a dialogue. Raises `NotFoundError`, `ConflictError` if it is another."""
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """What is said first, what on `help`, and what is listened for."""
+
+    text: str
+    help_text: str
+    vocabulary: Vocabulary
+
+
+async def open_topic(runs: RunService, dialogue: UUID, prompt: UUID) -> Topic:
+    """The open question of a dialogue, or its last word while promised help is awaited.
+
+    Raises `NotFoundError`, or `ConflictError` if it is another, or nothing is waited for.
+    """
     view = await runs.dialogues.view(dialogue)
-    if view.status == "closed" or view.awaiting != "answer" or view.prompt is None:
+    if view.status == "closed" or view.awaiting is None or view.prompt is None:
         raise ConflictError("this dialogue waits for no answer")
     if view.prompt.prompt != prompt:
-        raise ConflictError(f"the prompt {prompt} is not the open question of this dialogue")
-    return view.prompt
+        raise ConflictError(f"the prompt {prompt} is not the last one of this dialogue")
+    if view.awaiting == "help":
+        return Topic(view.prompt.text, PROMISE_HELP, Vocabulary.PROMISE)
+    return Topic(view.prompt.text, help_text(view.prompt.answers), Vocabulary.ANSWER)
 
 
 async def wait_until_over(
@@ -68,7 +85,7 @@ async def wait_until_over(
         # Followed before it is looked at, so that nothing happens in between.
         with journal.subscribe(journal.head, capacity) as subscription:
             try:
-                await open_question(runs, dialogue, prompt)
+                await open_topic(runs, dialogue, prompt)
             except ConflictError:
                 return EndReason.CLOSED
             try:

@@ -19,7 +19,8 @@ MORE_MARGIN = 0.03
 """For what is no answer: help, repeat and stop are what noise and other words are taken for, and
 there is a button for each."""
 
-ANSWERS = (Command.YES, Command.NO)
+ANSWERS = (Command.YES, Command.NO, Command.DONE)
+"""The last of these makes the robot look, and no more."""
 
 
 def is_sure(hypothesis: Hypothesis, levels_db: Sequence[float]) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 
 from mend.server.speech.conversation import Act, EndReason, SpokenConversation, State
 from mend.server.speech.ear import Ear, EarLostError, EarReport, Ears, TooManyConversationsError
+from mend.server.speech.vocabulary import Vocabulary
 
 log = logging.getLogger(__name__)
 
@@ -26,7 +27,9 @@ class Talk:
         ears: Ears,
         perform: Perform,
         over: Coroutine[Any, Any, EndReason],
+        vocabulary: Vocabulary = Vocabulary.ANSWER,
     ) -> None:
+        self._vocabulary = vocabulary
         self._conversation = conversation
         self._ears = ears
         self._perform = perform
@@ -104,7 +107,7 @@ class Talk:
 
     async def _follow_ear(self) -> None:
         try:
-            self._ear = await self._ears.open()
+            self._ear = await self._ears.open(self._vocabulary)
             self._ear_ready.set()
             while self._conversation.state is not State.ENDED:
                 await self._take(await self._ear.report())

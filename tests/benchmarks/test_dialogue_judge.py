@@ -263,6 +263,27 @@ def test_what_has_lain_in_the_open_for_long_must_not_be_told_to_be_away() -> Non
     assert told(GONE).now(FAR).deed(Act.PUT_BACK).now(FAR, 5.0).say(text).wrong() == []
 
 
+def test_what_is_seen_instead_of_help_is_compared_with_where_it_is() -> None:
+    nowhere, unmoved, elsewhere = (
+        "I do not see the part 1 where I can reach it yet. " + each
+        for each in (
+            "I do not see it at all. I keep watching.",
+            "I see it where it was after I asked. I keep watching.",
+            "I see it, but not there. I keep watching.",
+        )
+    )
+    assert told(GONE).say(nowhere).wrong() == []
+    lies = told(GONE).now(STARTS).deed(Act.PUT_BACK).now(STARTS, 5.0)
+    assert lies.say("I do not see it at all.").wrong() == ["it lies there"]
+    look: dict[str, Any] = {"fulfilled": [], "position": (5.0, 5.0, 0.7)}
+    assert told(FAR).add(ev.FirstLook, **look).say(unmoved).wrong() == []
+    moved = told(FAR).add(ev.FirstLook, **look).now(STARTS).say(unmoved).wrong()
+    assert len(moved) == 1
+    assert "it has moved" in moved[0]
+    assert told(FAR).say(elsewhere).wrong() == []
+    assert told(GONE).say(elsewhere).wrong() == ["it is not on the table"]
+
+
 def test_who_says_to_look_before_it_goes_on_has_not_said_to_go_on() -> None:
     for text, wrong in (("I go on.", ["it was put back"]), ("I look again before I go on.", [])):
         run = told().say(text).add(ev.NodeReset, reason="no help was seen", failed_attempt=False)

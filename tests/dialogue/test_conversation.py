@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mend.dialogue.conversation import Conversation, ConversationPhase
+from mend.dialogue.calls import ConversationPhase
+from mend.dialogue.conversation import Conversation
 from mend.dialogue.evidence import Change, PutRight
 from mend.dialogue.outlook import Next, Outlook, Sequel
 from mend.dialogue.registry import load_scripts
@@ -45,6 +46,9 @@ CALLS: dict[str, Call] = {
         Change.NONE, at_place=True
     ),
     "not seen": Conversation.help_not_seen,
+    "done": Conversation.said_done,
+    "not yet": Conversation.not_seen_yet,
+    "cannot": Conversation.take_back,
     "at place": lambda conversation: conversation.put_right(
         PutRight(Expectation.AT_PLACE, Change.MOVED)
     ),
@@ -487,10 +491,12 @@ def test_every_conversation_closes_within_a_bounded_number_of_asks(
     turns = conversation.open()
     legal = {
         ConversationPhase.ASKING: ["yes", "no"],
-        ConversationPhase.AWAITING_HELP: ["seen", "seen as before", "not seen"],
+        ConversationPhase.AWAITING_HELP: ["seen", "seen as before", "not seen", "cannot"],
+        ConversationPhase.LOOKING_AGAIN: ["seen", "not yet", "not seen", "cannot"],
     }
     while conversation.phase is not ConversationPhase.CLOSED:
-        call = data.draw(st.sampled_from(legal[conversation.phase]))
+        calls = [*legal[conversation.phase], *(["done"] if conversation.looks_at_a_word else [])]
+        call = data.draw(st.sampled_from(calls))
         turns += CALLS[call](conversation)
         # Two offers of help, each asked about twice again, and whether to leave it out.
         assert sum(isinstance(turn, Ask) for turn in turns) <= 7

@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 
-from mend.dialogue.conversation import Conversation, ConversationPhase
+from mend.dialogue.calls import ConversationPhase
+from mend.dialogue.conversation import Conversation
 from mend.dialogue.evidence import Change
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.registry import load_scripts

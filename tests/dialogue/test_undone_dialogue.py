@@ -2,7 +2,8 @@
 
 import pytest
 
-from mend.dialogue.conversation import Conversation, ConversationPhase
+from mend.dialogue.calls import ConversationPhase
+from mend.dialogue.conversation import Conversation
 from mend.dialogue.evidence import Change
 from mend.dialogue.outlook import Next, Outlook, Sequel
 from mend.dialogue.registry import load_scripts

@@ -4,7 +4,8 @@ from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
-from mend.dialogue.conversation import Conversation, ConversationPhase
+from mend.dialogue.calls import ConversationPhase
+from mend.dialogue.conversation import Conversation
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.script import Ask, Script, Turn
 from mend.server.runtime.dialogue_state import converse

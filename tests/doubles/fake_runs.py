@@ -6,8 +6,9 @@ from datetime import UTC, datetime, timedelta
 from typing import Any, Literal
 from uuid import UUID, uuid4
 
-from mend.dialogue.script import CloseReason
+from mend.dialogue.script import CloseReason, Help
 from mend.errors import ConflictError, NotFoundError, WrongInputError
+from mend.server.camera_picture import CameraPicture
 from mend.server.documents import CheckedDocument, DocumentMistake, Uploaded, WrongDocumentError
 from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
@@ -16,6 +17,7 @@ from mend.server.journal.run_index import RunPage
 from mend.server.runtime.leaf_words import understood
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import (
+    AwaitedHelp,
     DialogueView,
     LeafSaid,
     NodeView,
@@ -65,6 +67,8 @@ class FakeRuns:
         self._runs: dict[UUID, RunView] = {}
         self._dialogues: dict[UUID, DialogueView] = {}
         self._answers: dict[UUID, str] = {}
+        self.photographed: list[tuple[str | None, str]] = []
+        """Of which robot a picture was asked for, and from which camera."""
 
     async def start_run(self, request: RunRequest, author: ev.Author | None = None) -> RunView:
         if request.tree not in TREES:
@@ -223,11 +227,12 @@ class FakeRuns:
             ),
         )
 
-    async def picture(self, run: UUID, camera: str) -> bytes:
+    async def picture(self, run: UUID, camera: str, robot: str | None = None) -> CameraPicture:
         self.run_now(run)
+        self.photographed.append((robot, camera))
         if camera not in ("head", "forearm"):
             raise NotFoundError(f"there is no camera '{camera}'")
-        return JPEG
+        return CameraPicture(JPEG)
 
     async def raise_issue(self, run: UUID) -> DialogueView:
         """Open a dialogue with one question and a picture."""
@@ -361,6 +366,41 @@ class FakeRuns:
         )
         assert isinstance(extended, ev.DeadlineExtended)
         return extended
+
+    async def await_help(self, dialogue: UUID, helper: str) -> None:
+        """A helper has promised to put it back."""
+        awaited = AwaitedHelp(help=Help.PUT_BACK, helper=helper, until=90.0)
+        self._change(dialogue, awaiting="help", help=awaited)
+
+    def awaited(self, dialogue: UUID) -> AwaitedHelp:
+        view = self.dialogue_now(dialogue)
+        if view.status == "closed" or view.help is None:
+            raise ConflictError("no help is awaited in this dialogue")
+        return view.help
+
+    async def said_done(
+        self, dialogue: UUID, helper: str, author: ev.Author | None = None
+    ) -> ev.HelpReported:
+        awaited, of = self.awaited(dialogue), _of_dialogue(self.dialogue_now(dialogue))
+        if awaited.reported_by is not None:
+            raise ConflictError("the robot looks already")
+        said = ev.HelpReported(**of, help=awaited.help, helper=helper, author=author)
+        (reported,) = await self.commit(said)
+        self._change(dialogue, help=awaited.model_copy(update={"reported_by": helper}))
+        assert isinstance(reported, ev.HelpReported)
+        return reported
+
+    async def take_back(
+        self, dialogue: UUID, helper: str, author: ev.Author | None = None
+    ) -> ev.PromiseTakenBack:
+        awaited, of = self.awaited(dialogue), _of_dialogue(self.dialogue_now(dialogue))
+        if awaited.helper != helper:
+            raise ConflictError(f"{awaited.helper} has promised this")
+        said = ev.PromiseTakenBack(**of, help=awaited.help, helper=helper, author=author)
+        (taken_back,) = await self.commit(said)
+        self._change(dialogue, awaiting=None, help=None)
+        assert isinstance(taken_back, ev.PromiseTakenBack)
+        return taken_back
 
     async def claim(
         self,

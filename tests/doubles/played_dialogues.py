@@ -13,15 +13,16 @@ from fake_runs import FakeRuns
 from mend.dialogue.evidence import Change
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.registry import load_scripts
-from mend.dialogue.script import Ask
+from mend.dialogue.script import Ask, Sight
 from mend.errors import ConflictError
 from mend.robots.link.messages import Detection
+from mend.server.camera_picture import CameraPicture
 from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal
 from mend.server.runtime.dialogue_events import DialogueEvents
 from mend.server.runtime.dialogue_state import rehearse
-from mend.server.runtime.views import AwaitedHelp, DialogueView, PromptView
+from mend.server.runtime.views import AwaitedHelp, DialogueView, PromptView, UnseenHelpView
 
 WIDTH_PX, HEIGHT_PX = 320, 240
 DETECTION = Detection(
@@ -32,6 +33,14 @@ DETECTION = Detection(
     tolerance_px=12.0,
     area_px=150,
     explanation="yellow_bar is not where it must be between the fingers",
+)
+SEEN_NOW = Detection(
+    camera="head",
+    size_px=(WIDTH_PX, HEIGHT_PX),
+    center=(60.0, 150.0),
+    expected=(200.0, 120.0),
+    tolerance_px=24.0,
+    area_px=400,
 )
 
 
@@ -127,6 +136,44 @@ class PlayedDialogues(FakeRuns):
             await self._go_on(dialogue, f"seen:{Change.MOVED}", [verified])
         else:
             await self._go_on(dialogue, "not_seen", [ev.HelpNotSeen(**of, help=awaited.help)])
+
+    async def said_done(
+        self, dialogue: UUID, helper: str, author: ev.Author | None = None
+    ) -> ev.HelpReported:
+        self._played[dialogue].calls.append("said_done")
+        return await super().said_done(dialogue, helper, author)
+
+    async def see_not_yet(self, dialogue: UUID) -> None:
+        """The robot has looked at a helper's word, and does not see the help yet."""
+        played, awaited = self._played[dialogue], self.awaited(dialogue)
+        picture = uuid4()
+        unseen = ev.HelpNotSeenYet(
+            **_of(dialogue, played.raised),
+            help=awaited.help,
+            sight=Sight.UNMOVED,
+            picture=picture,
+            detection=SEEN_NOW,
+        )
+        await self._journal.append(Entry(pictures={picture: _jpeg(3)}))
+        view = UnseenHelpView(time=unseen.time, picture=picture, detection=SEEN_NOW)
+        still = awaited.model_copy(update={"reported_by": None})
+        await self._go_on(dialogue, "not_yet::unmoved", [unseen])
+        self._change(dialogue, unseen_help=view, help=still, awaiting="help")
+
+    async def take_back(
+        self, dialogue: UUID, helper: str, author: ev.Author | None = None
+    ) -> ev.PromiseTakenBack:
+        awaited = self.awaited(dialogue)
+        if awaited.helper != helper:
+            raise ConflictError(f"{awaited.helper} has promised this")
+        taken_back = self._played[dialogue].make.promise_taken_back(awaited, author)
+        committed = await self._go_on(dialogue, "take_back", [taken_back])
+        assert isinstance(committed[0], ev.PromiseTakenBack)
+        return committed[0]
+
+    async def picture(self, run: UUID, camera: str, robot: str | None = None) -> CameraPicture:
+        await super().picture(run, camera, robot)
+        return CameraPicture(_jpeg(2))
 
     async def call(self, dialogue: UUID, call: str) -> None:
         """Anything else that moves a conversation on: `silence`, `put_right:...`, `abort`."""

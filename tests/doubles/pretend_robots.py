@@ -35,8 +35,9 @@ from mend.robots.link.messages import (
     Start,
     StepStarted,
 )
+from mend.server.camera_picture import CameraPicture
 from mend.server.journal.journal import Receipt
-from mend.server.runtime.dialogue_looks import FIRST_LOOK_S, HELP_TAKES_S, WATCH_PERIOD_S
+from mend.server.runtime.dialogue_looks import HELP_TAKES_S, TAKING_S, WATCH_PERIOD_S
 from mend.tasks.intervention import Act
 
 FIRST_JPEG, SECOND_JPEG = b"\xff\xd8\xff first \xff\xd9", b"\xff\xd8\xff second \xff\xd9"
@@ -57,9 +58,10 @@ class PretendRobot:
 
     A stubborn one runs into them also when it goes on after a hold.
     `patient`: it lets no time pass while a question is open, as live helpers take their time.
-    `films`: two pictures follow every issue. What it misses, drops or looks for in vain is gone
-    until somebody brings it, and something is in its way from when it is blocked until somebody
-    clears it. `felt`: its issues were felt; no camera sees anything in its way then.
+    `films`: two pictures follow every issue, and one comes with what it does not see. What it
+    misses, drops or looks for in vain is gone until somebody brings it, and something is in its way
+    from when it is blocked until somebody clears it. `felt`: its issues were felt; no camera sees
+    anything in its way then.
     `thefts`: whenever one object has been placed, another one (or itself) that was placed is
     stolen, so often; with `in_reach` it is only elsewhere on the table then. `hidden_at_place`:
     what no look can judge. `returns`: once such an object is placed, all that was stolen is back at
@@ -161,8 +163,8 @@ class PretendRobots:
             self._queues[robot].append((command_id, body))
             self._wake[robot].set()
 
-    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> bytes:  # noqa: ARG002
-        return b"\xff\xd8picture"
+    async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> CameraPicture:  # noqa: ARG002
+        return CameraPicture(b"\xff\xd8picture")
 
     def hello(self, robot: str) -> Hello | None:
         return self.robots[robot].hello() if robot in self.robots else None
@@ -317,7 +319,7 @@ class PretendRobots:
             there = robot.wrong and look.expect == "in_reach" and look.object not in robot.lost
             held = look.expect == "in_gripper" and look.object == robot.held
             fulfilled = (look.object or "") in robot.right or clear or there or held
-            if not fulfilled and robot.patient and look.within_s > FIRST_LOOK_S:
+            if not fulfilled and robot.patient and look.within_s > TAKING_S:
                 return
             if not fulfilled:
                 # What is queued may be the deed that is being watched for.
@@ -341,6 +343,9 @@ class PretendRobots:
                 gone=[each for each in look.finished if self._verdict(robot, each) == "gone"],
                 held=robot.held,
                 blind="the camera is covered" if robot.blind else None,
+                jpeg=base64.b64encode(SECOND_JPEG).decode()
+                if robot.films and not fulfilled
+                else None,
             ),
         )
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from mend.server.speech.commands import Command
 from mend.server.speech.ear import Ear, EarLostError, EarReport, TooManyConversationsError
+from mend.server.speech.vocabulary import Vocabulary
 from mend.server.speech.voice import VoiceError
 
 
@@ -16,8 +17,9 @@ class ScriptedEar:
     Sound whose first byte is 1 begins an utterance, and whose first byte is 2 ends it.
     """
 
-    def __init__(self, hears: list[str | None]) -> None:
+    def __init__(self, hears: list[str | None], vocabulary: Vocabulary = Vocabulary.ANSWER) -> None:
         self._hears = hears
+        self.vocabulary = vocabulary
         self._reports: asyncio.Queue[EarReport | EarLostError] = asyncio.Queue()
         self._interruptions = 0
         self.heard = b""
@@ -73,9 +75,9 @@ class ScriptedEars:
         if sum(not ear.closed for ear in self.opened) >= self.at_once:
             raise TooManyConversationsError("too many spoken conversations are going on already")
 
-    async def open(self) -> Ear:
+    async def open(self, vocabulary: Vocabulary = Vocabulary.ANSWER) -> Ear:
         self.check_room()
-        self.opened.append(ScriptedEar(self.hears))
+        self.opened.append(ScriptedEar(self.hears, vocabulary=vocabulary))
         return self.opened[-1]
 
     async def close(self) -> None:
@@ -134,7 +136,7 @@ class MishearingEar(ScriptedEar):
 class MishearingEars(ScriptedEars):
     """Ears to which nothing is a command."""
 
-    async def open(self) -> Ear:
+    async def open(self, vocabulary: Vocabulary = Vocabulary.ANSWER) -> Ear:  # noqa: ARG002
         self.check_room()
         self.opened.append(MishearingEar())
         return self.opened[-1]

@@ -1,10 +1,10 @@
 """For everybody: that axe finds what is wrong, and where the focus is."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Literal
 
 import pytest
+from axe_in_page import WCAG, load_axe, violations
 from console_in_browser import OpenPage, settle
 from console_situations import Situation, live_run, open_question
 from playwright.async_api import Page, ViewportSize
@@ -16,8 +16,6 @@ pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 Theme = Literal["light", "dark"]
 
-AXE = Path(__file__).parents[2] / "web/node_modules/axe-core/axe.min.js"
-WCAG = {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]}
 # A theme changes colours and nothing else: of the second one, only they are looked at.
 COLORS = {"type": "rule", "values": ["color-contrast", "link-in-text-block"]}
 RULES: Mapping[Theme, Mapping[str, Any]] = {"light": WCAG, "dark": COLORS}
@@ -35,23 +33,6 @@ FOCUSED = """() => {
     const name = focused.getAttribute("aria-label") ?? focused.textContent;
     return { name, seen: spots.some(mine) };
 }"""
-
-
-async def load_axe(page: Page) -> None:
-    # As from a debugger: the page's own policy lets no other script in.
-    await page.evaluate(AXE.read_text("utf-8"))
-
-
-async def violations(page: Page, only: Mapping[str, Any]) -> list[str]:
-    """What axe finds against WCAG on a page as it is shown now."""
-    found: list[dict[str, Any]] = await page.evaluate(
-        "async (only) => (await axe.run({runOnly: only})).violations", only
-    )
-    return [
-        f"{each['id']}: {node['target']} {node['failureSummary']}"
-        for each in found
-        for node in each["nodes"]
-    ]
 
 
 async def test_axe_finds_what_is_too_pale_in_one_theme_alone(open_page: OpenPage) -> None:

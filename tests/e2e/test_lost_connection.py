@@ -17,7 +17,7 @@ async def test_question_survives_a_lost_connection(stage: Stage) -> None:
     await page.context.set_offline(False)
     await expect(page.get_by_text("No connection to the service.")).to_be_hidden(timeout=60_000)
     await page.locator(".answer.yes").click()
-    await expect(page.get_by_text("There is nothing to press")).to_be_visible()
+    await expect(page.get_by_text("It goes on by itself as soon as")).to_be_visible()
     assert stage.runs.dialogue_now(dialogue).answered_by == "anna"
 
 

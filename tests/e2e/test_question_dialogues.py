@@ -119,6 +119,6 @@ async def expect_shown(page: Page, turns: list[Turn]) -> None:
             case Remark(text=text):
                 await expect(page.get_by_text(text).first).to_be_visible()
             case AwaitHelp():
-                await expect(page.get_by_text("There is nothing to press")).to_be_visible()
+                await expect(page.get_by_text("It goes on by itself as soon as")).to_be_visible()
             case Close():
                 await expect(page.locator(".answer")).to_have_count(0)

@@ -45,7 +45,7 @@ async def test_answer_to_a_question_that_nobody_can_have_read_is_not_taken_and_t
         await page.keyboard.press(answer[0])
         await expect(too_early).to_be_hidden()
     await page.clock.run_for(1_000)
-    await expect(page.get_by_text("There is nothing to press")).to_be_visible()
+    await expect(page.get_by_text("It goes on by itself as soon as")).to_be_visible()
 
 
 async def test_final_answer_can_be_undone(stage: Stage) -> None:
@@ -150,7 +150,7 @@ async def test_keys_can_be_changed_and_switched_off(stage: Stage) -> None:
     await expect(page.locator(".answer.yes")).to_be_enabled()
     await page.keyboard.press("y")
     await page.keyboard.press("j")
-    await expect(page.get_by_text("There is nothing to press")).to_be_visible()
+    await expect(page.get_by_text("It goes on by itself as soon as")).to_be_visible()
     await page.get_by_role("link", name="anna").click()
     await page.get_by_label("Answer with single keys").uncheck()
     await page.get_by_role("navigation").get_by_role("link", name="Questions").click()

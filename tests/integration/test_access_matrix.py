@@ -134,6 +134,8 @@ FIELDS: dict[str, dict[str, Any]] = {
     "claim": {"dialogue": IDS["dialogue"]},
     "release": {"dialogue": IDS["dialogue"]},
     "extend": IDS,
+    "done": {"dialogue": IDS["dialogue"]},
+    "take_back": {"dialogue": IDS["dialogue"]},
     "listen": IDS,
 }
 

@@ -111,6 +111,30 @@ async def test_stream_gives_a_snapshot_and_answers_on_the_way(
         assert stream.seen == events[-1].seq
 
 
+async def test_a_word_on_promised_help_goes_by_request_and_on_the_stream(
+    client: MendClient, service: ServiceUnderTest
+) -> None:
+    run = await client.start_run(REQUEST)
+    view = await service.runs.raise_issue(run.id)
+    await service.runs.await_help(view.dialogue, "anna")
+    assert (await client.said_done(view.dialogue, "ben")).helper == "ben"
+    with pytest.raises(RefusedError) as looks_already:
+        await client.said_done(view.dialogue, "anna")
+    assert looks_already.value.problem.status == 409
+    async with client.follow("anna") as stream:
+        messages = aiter(stream)
+        await anext(messages)
+        with pytest.raises(CommandRefusedError):
+            await stream.said_done(view.dialogue)
+        result = await stream.take_back(view.dialogue)
+        assert (result["type"], result["helper"]) == ("promise_taken_back", "anna")
+        with pytest.raises(CommandRefusedError) as none_awaited:
+            await stream.take_back(view.dialogue)
+        assert none_awaited.value.error.status == 409
+    with pytest.raises(RefusedError):
+        await client.take_back(view.dialogue, "anna")
+
+
 async def collect(messages: AsyncIterator[Snapshot | Event], count: int) -> list[int]:
     async with asyncio.timeout(60):
         return [(await anext(messages)).seq for _ in range(count)]

@@ -16,6 +16,7 @@ from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import DialogueView
 from mend.server.speech.abilities import SpeechAbilities
 from mend.server.speech.rendering import SpokenTexts
+from mend.server.speech.vocabulary import Vocabulary
 from mend.server.speech.voice import NoVoice
 
 REQUEST = RunRequest(tree="eket", world="tabletop", speed="max")
@@ -137,6 +138,28 @@ async def test_noise_is_no_answer(
         assert await say_something(socket) == {"type": "listening"}
         assert await exchange(socket, BEGINS) == {"type": "hearing"}
         assert (await exchange(socket, ENDS))["command"] == "yes"
+
+
+@pytest.mark.parametrize("command", ["done", "cannot"])
+async def test_whoever_promised_help_says_that_it_is_done_or_cannot_be(
+    service: ServiceUnderTest, ears: ScriptedEars, question: DialogueView, command: str
+) -> None:
+    await service.runs.await_help(question.dialogue, "anna")
+    ears.hears.extend([None, "help", command])
+    async with microphone(service) as socket:
+        said = await exchange(socket, listen(question))
+        assert said["what"] == "question"
+        assert (await say_something(socket))["command"] is None
+        sorry = await receive(socket)
+        assert (sorry["text"], sorry["audio"]) == (
+            "Sorry, please say done, or I can't.",
+            "/api/speech/phrases/promise_sorry",
+        )
+        assert (await say_something(socket))["command"] == "help"
+        assert (await receive(socket))["audio"] == "/api/speech/phrases/promise_help"
+        assert (await say_something(socket))["command"] == command
+        assert await receive(socket) == {"type": "ended", "reason": "heard"}
+    assert [each.vocabulary for each in ears.opened] == [Vocabulary.PROMISE]
 
 
 async def test_it_ends_when_somebody_else_answers(

@@ -501,6 +501,23 @@ def test_hello_says_what_it_is_and_what_it_does() -> None:
     assert [each.state for each in states if each] == ["running", "retreating", "holding"]
 
 
+def test_a_picture_says_where_is_to_be_what_the_robot_looks_for() -> None:
+    bench = RobotBench()
+    bench.look(expect="at_place", object="pink_bar", place="left", within_s=60.0)
+    bench.robot.advance(1.0)
+    for camera in ("head", "forearm"):
+        bench.send(TakePicture(camera=camera))
+    of_head, of_forearm = bench.pictures
+    assert of_head.detection is not None
+    assert of_head.detection.expected is not None
+    assert of_head.detection.center is None
+    assert of_forearm.detection is None
+    bench.look()
+    bench.run()
+    bench.send(TakePicture(camera="head"))
+    assert bench.pictures[-1].detection is None
+
+
 def test_a_picture_is_sent_when_asked_for() -> None:
     bench = RobotBench()
     command = bench.send(TakePicture(camera="head"))

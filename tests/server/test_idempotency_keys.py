@@ -99,6 +99,8 @@ def of_dialogue(what: str, event: type[ev.Event], **more: Any) -> Ask:
         assert view.prompt is not None
         if what == "release":
             await served.service.runs.dialogues.claim(view.dialogue, "anna")
+        if what in ("done", "take_back"):
+            await served.service.runs.await_help(view.dialogue, "anna")
         body = {"helper": "anna", **more}
         if what in ("answers", "extend"):
             body["prompt"] = str(view.prompt.prompt)
@@ -117,6 +119,8 @@ ASKED: dict[str, Ask] = {
     "claim": of_dialogue("claim", ev.Claimed),
     "release": of_dialogue("release", ev.Released),
     "extend": of_dialogue("extend", ev.DeadlineExtended),
+    "done": of_dialogue("done", ev.HelpReported),
+    "take back": of_dialogue("take_back", ev.PromiseTakenBack),
     "upload": upload,
 }
 EVERY = pytest.mark.parametrize("ask", ASKED.values(), ids=ASKED)

@@ -465,6 +465,26 @@ async def test_more_time_and_taking_over_are_asked_for_over_rest(
     assert taken.json()["claimed_by"] == "ben"
 
 
+async def test_a_word_on_promised_help_is_taken_over_rest_and_refused_where_none_is_awaited(
+    service: ServiceUnderTest, client: httpx.AsyncClient
+) -> None:
+    view = await service.runs.raise_issue((await service.runs.start_run(REQUEST)).id)
+    path = f"/api/dialogues/{view.dialogue}"
+    for word in ("done", "take_back"):
+        refused = await client.post(f"{path}/{word}", json={"helper": "anna"})
+        assert refused.status_code == 409
+        assert "no help is awaited" in refused.json()["detail"]
+    await service.runs.await_help(view.dialogue, "anna")
+    said = await client.post(f"{path}/done", json={"helper": "ben"})
+    assert said.status_code == 200
+    assert (said.json()["type"], said.json()["helper"]) == ("help_reported", "ben")
+    assert (await client.get(path)).json()["help"]["reported_by"] == "ben"
+    assert (await client.post(f"{path}/take_back", json={"helper": "ben"})).status_code == 409
+    taken_back = await client.post(f"{path}/take_back", json={"helper": "anna"})
+    assert taken_back.json()["type"] == "promise_taken_back"
+    assert (await client.get(path)).json()["help"] is None
+
+
 async def test_poses_of_a_run_that_showed_nothing_are_empty_and_of_no_run_not_found(
     client: httpx.AsyncClient,
 ) -> None:

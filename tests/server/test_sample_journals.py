@@ -37,9 +37,11 @@ OF_NO_RUN = {
     "site_opened",
     "site_restarted",
 }
+OF_PROMISES = {"help_not_seen_yet", "help_reported", "promise_taken_back"}
 ADDED_SINCE: dict[str, set[str]] = {
     "v1": {
         *OF_NO_RUN,
+        *OF_PROMISES,
         "clip_recorded",
         "deadline_extended",
         "first_look",
@@ -53,16 +55,17 @@ ADDED_SINCE: dict[str, set[str]] = {
     },
     "v2": {
         *OF_NO_RUN,
+        *OF_PROMISES,
         "node_taken",
         "first_look",
         "looked_anew",
         "suspected_false_alarm",
         "way_found",
     },
-    "v3": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
-    "v4": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
-    "v5": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
-    "v6": {*OF_NO_RUN, "node_taken", "looked_anew", "way_found"},
+    "v3": {*OF_NO_RUN, *OF_PROMISES, "node_taken", "looked_anew", "way_found"},
+    "v4": {*OF_NO_RUN, *OF_PROMISES, "node_taken", "looked_anew", "way_found"},
+    "v5": {*OF_NO_RUN, *OF_PROMISES, "node_taken", "looked_anew", "way_found"},
+    "v6": {*OF_NO_RUN, *OF_PROMISES, "node_taken", "looked_anew", "way_found"},
 }
 """The types of events that came after a sample was written."""
 

@@ -3,8 +3,10 @@
 from typing import Protocol
 
 from mend.robots.arm.looks.looker import Looker
+from mend.robots.arm.looks.shown import detection_of
+from mend.robots.body import CameraImage
 from mend.robots.catalogue import Part
-from mend.robots.link.messages import Location
+from mend.robots.link.messages import Detection, Location
 
 
 class VisualCheck(Protocol):
@@ -12,6 +14,10 @@ class VisualCheck(Protocol):
 
     def is_fulfilled(self) -> bool:
         """Look once more."""
+        ...
+
+    def detection(self, image: CameraImage) -> Detection:
+        """Where in a head picture the object is, and is to be, as far as that can be said."""
         ...
 
 
@@ -27,6 +33,11 @@ class AtPlace:
             return False
         return self._looker.perception.head.recognize_at(image, self._part, self._target)
 
+    def detection(self, image: CameraImage) -> Detection:
+        perception = self._looker.perception
+        sighting = perception.head.sight(self._part, image)
+        return detection_of(perception, image, self._part, sighting, self._target)
+
 
 class ViewClear:
     """The head camera shows the table."""
@@ -36,3 +47,6 @@ class ViewClear:
 
     def is_fulfilled(self) -> bool:
         return self._looker.look_at_table() is not None
+
+    def detection(self, image: CameraImage) -> Detection:
+        return detection_of(self._looker.perception, image, None, None, None)

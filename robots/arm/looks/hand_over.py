@@ -7,9 +7,11 @@ from mend.robots.arm.grasp import can_grasp
 from mend.robots.arm.grip import GripState
 from mend.robots.arm.grip.composition import likeliest
 from mend.robots.arm.looks.looker import Looker
+from mend.robots.arm.looks.shown import shown
+from mend.robots.arm.perception import FOREARM
 from mend.robots.catalogue import Part
 from mend.robots.execution.routine import Routine
-from mend.robots.link.messages import Holding, Looked
+from mend.robots.link.messages import Detection, Holding, Looked
 
 _STEADY_S = 0.3
 _SURELY_ANOTHER_S = 1.0
@@ -45,7 +47,9 @@ def take_from_person(looker: Looker, command: str, part: Part, within_s: float) 
         offered = yield from _wait_until_offered(looker, part, end_s)
         if offered is not _Offered.PERHAPS:
             another = offered is _Offered.ANOTHER
-            return looker.answer(command, fulfilled=False, felt="another" if another else None)
+            unseen = looker.answer(command, fulfilled=False, felt="another" if another else None)
+            image = perception.hand.feel(()).image
+            return shown(unseen, image, Detection(camera=FOREARM))
         yield from arm.close_gripper()
         perception.hand.watch_handed(part, perception.catalogue.parts.values())
         yield from _judge_grip(looker)

@@ -9,8 +9,10 @@ from mend.robots.arm.behaviors.pick_and_place import lifting
 from mend.robots.arm.behaviors.planning import Plan, at_once, plan_amid
 from mend.robots.arm.grasp import can_grasp
 from mend.robots.arm.looks.looker import Looker
+from mend.robots.arm.looks.shown import detection_of
+from mend.robots.body import CameraImage
 from mend.robots.catalogue import Part
-from mend.robots.link.messages import Location
+from mend.robots.link.messages import Detection, Location
 from mend.robots.vision.head import HeadSighting
 from mend.robots.vision.seen_box import SeenBox
 
@@ -43,6 +45,11 @@ class InReach:
         if moved_m > _STILL_M:
             return False
         return self._can_lift(now, others(self._part, perception.head.seen_boxes(image)))
+
+    def detection(self, image: CameraImage) -> Detection:
+        perception = self._looker.perception
+        sighting = perception.head.sight(self._part, image)
+        return detection_of(perception, image, self._part, sighting, None)
 
     def _can_lift(self, at: HeadSighting, around: Sequence[SeenBox]) -> bool:
         """Whether there is a plan for that; where there was none, only once something has moved."""

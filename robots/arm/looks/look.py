@@ -71,5 +71,5 @@ def look_until(
             fulfilled = yield from trial.passes()
         passing = not fulfilled and looker.others_pass(behind)
         if fulfilled or (left_s <= 1e-9 and not passing):
-            return (yield from looker.answer_and_judge(command, fulfilled))
+            return (yield from looker.answer_and_judge(command, fulfilled, expectation.detection))
         yield from looker.arm.wait(min(_PERIOD_S, left_s) if left_s > 1e-9 else LOOK_AGAIN_S)

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from mend.robots.arm.arm import Arm
 from mend.robots.arm.behaviors.execution import ArmExecution
 from mend.robots.arm.behaviors.search import LOOK_AGAIN_S, LOOKS
+from mend.robots.arm.looks.shown import shown
 from mend.robots.arm.perception import Perception
 from mend.robots.arm.result import JudgedResult
 from mend.robots.body import CameraImage
 from mend.robots.execution.routine import Routine
-from mend.robots.link.messages import FeltLoad, FinishedResult, Looked, ReportBody
+from mend.robots.link.messages import Detection, FeltLoad, FinishedResult, Looked, ReportBody
 from mend.robots.vision.behind_others import BehindOthers
 from mend.robots.vision.presence import Presence
 
@@ -51,11 +52,17 @@ class Looker:
         looked = self._looked(command, fulfilled, self.perception.head.look(), {})
         return looked.model_copy(update={"felt": felt})
 
-    def answer_and_judge(self, command: str, fulfilled: bool | None) -> Routine[Looked]:
+    def answer_and_judge(
+        self,
+        command: str,
+        fulfilled: bool | None,
+        detection: Callable[[CameraImage], Detection] | None = None,
+    ) -> Routine[Looked]:
         """All that the head camera sees, and what became of the finished results.
 
         What seems gone, or a picture that shows no table, has to be so in a second picture as
-        well: a hand may pass by. With the arm in view it judges none.
+        well: a hand may pass by. With the arm in view it judges none. The picture
+        in which something was not found comes along, with its `detection`.
         """
         image = self.perception.head.look()
         results = self.finished if self.arm.at_rest else ()
@@ -67,7 +74,10 @@ class Looker:
             self.perception.head.doubt()
             image = self.perception.head.look()
             verdicts |= self._judge(image, results if blind else doubted)
-        return self._looked(command, fulfilled, image, verdicts)
+        looked = self._looked(command, fulfilled, image, verdicts)
+        if fulfilled is not False or detection is None:
+            return looked
+        return shown(looked, image, detection(image))
 
     def look_at_table(self) -> CameraImage | None:
         """A head picture; None if it shows nothing of the table."""

@@ -3,7 +3,9 @@
 from mend.robots.arm.behaviors.contact import hindering_n
 from mend.robots.arm.body import ToolPose
 from mend.robots.arm.looks.looker import Looker
+from mend.robots.arm.looks.shown import detection_of
 from mend.robots.body import CameraImage
+from mend.robots.link.messages import Detection
 
 _CLEAR_FORCE_N = 20.0
 """What holds an arm up at its first try pushes harder; its own load and noise make at most 8 N."""
@@ -24,6 +26,9 @@ class WayClear:
             way = [here, *way]
         image = self._looker.look_at_table()
         return image is not None and self._is_seen_clear(image, way)
+
+    def detection(self, image: CameraImage) -> Detection:
+        return detection_of(self._looker.perception, image, None, None, None)
 
     def _pressed_n(self, here: ToolPose | None, way: list[ToolPose]) -> float:
         """How hard something pushes against going on."""

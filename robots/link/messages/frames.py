@@ -9,6 +9,7 @@ from mend.robots.link.messages.parts import (
     IDENTITY,
     ActiveExecution,
     BaseLimits,
+    Detection,
     Driven,
     PoseLayout,
     PoseValues,
@@ -96,12 +97,16 @@ class Taken(Message):
 
 
 class Picture(Message):
-    """A camera's picture, base64 JPEG; not durable. `command` asked for it."""
+    """A camera's picture, base64 JPEG; not durable. `command` asked for it.
+
+    `detection`: while the robot looks for something, where in the picture that is to be.
+    """
 
     type: Literal["picture"] = "picture"
     command: Word
     camera: Word
     jpeg: str
+    detection: Detection | None = None
 
 
 class Poses(Message):

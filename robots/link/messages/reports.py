@@ -98,8 +98,9 @@ class Looked(Message):
     where the object that was just put down is to be, so that the look tells nothing of what is on
     the table; None if it did. `felt`: what a basket felt where that was not what was expected;
     `another` also where something else than the object was held out to the fingers.
-    `led_round`: `way_clear` is fulfilled because another way leads round, not because what was in
-    the way is gone.
+    `jpeg` and `detection`: what the camera showed where what was expected was not so, and where in
+    that the object is seen, and is to be. `led_round`: `way_clear` is fulfilled because another way
+    leads round, not because what was in the way is gone.
     """
 
     type: Literal["looked"] = "looked"
@@ -113,6 +114,8 @@ class Looked(Message):
     blind: Sentence | None = None
     felt: FeltLoad | None = None
     led_round: bool = False
+    jpeg: str | None = None
+    detection: Detection | None = None
 
 
 class WayFound(Message):

@@ -14,8 +14,11 @@ from mend.server.journal.events.dialogue_events import (
     FirstLook,
     HelpAwaited,
     HelpNotSeen,
+    HelpNotSeenYet,
+    HelpReported,
     HelpVerified,
     LookedAnew,
+    PromiseTakenBack,
     Prompt,
     Released,
     Resolved,
@@ -96,6 +99,9 @@ AnyEvent = Annotated[
     | HelpAwaited
     | HelpVerified
     | HelpNotSeen
+    | HelpReported
+    | HelpNotSeenYet
+    | PromiseTakenBack
     | Resolved
     | DialogueClosed
     | InterventionAccepted

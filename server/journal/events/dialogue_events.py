@@ -5,7 +5,8 @@ from typing import Literal
 from uuid import UUID
 
 from mend.dialogue.evidence import Change
-from mend.dialogue.script import CloseReason, Expectation, Felt, Help
+from mend.dialogue.script import CloseReason, Expectation, Felt, Help, Sight
+from mend.robots.link.messages import Detection
 from mend.server.journal.events.event import Author, EventModel, NodeEvent
 from mend.tasks.resolution import Resolution
 
@@ -154,17 +155,56 @@ class HelpVerified(DialogueEvent):
     at_place: bool = False
 
 
-class HelpNotSeen(DialogueEvent):
-    """The robot did not see the promised help in time.
+class HelpReported(DialogueEvent):
+    """Somebody says that the promised help is done: the robot looks at once.
 
-    `felt`: what its basket felt instead. `blind`: why it could see nothing; None if it saw that
-    there was none.
+    `helper` says so, who need not have promised it.
     """
 
-    type: Literal["help_not_seen"] = "help_not_seen"
+    type: Literal["help_reported"] = "help_reported"
+    help: Help
+    helper: str
+    author: Author | None = None
+
+
+class PromiseTakenBack(DialogueEvent):
+    """Who promised help cannot give it after all: the dialogue goes on as after a no to it."""
+
+    type: Literal["promise_taken_back"] = "promise_taken_back"
+    help: Help
+    helper: str
+    author: Author | None = None
+
+
+class UnseenHelp(DialogueEvent):
+    """A look that did not see the promised help.
+
+    `felt`: what its basket felt instead. `blind`: why it could see nothing; None if it saw that
+    there was none. `picture`: what its camera showed then, and `detection` where in it the object
+    was seen, and where it was to be.
+    """
+
     help: Help
     felt: Felt | None = None
     blind: str | None = None
+    picture: UUID | None = None
+    detection: Detection | None = None
+
+
+class HelpNotSeen(UnseenHelp):
+    """The robot did not see the promised help in time."""
+
+    type: Literal["help_not_seen"] = "help_not_seen"
+
+
+class HelpNotSeenYet(UnseenHelp):
+    """The robot was told that the help is done, does not see it, and goes on watching for it.
+
+    `sight`: what it saw of the object instead.
+    """
+
+    type: Literal["help_not_seen_yet"] = "help_not_seen_yet"
+    sight: Sight | None = None
 
 
 class Resolved(DialogueEvent):

@@ -35,6 +35,7 @@ from mend.robots.link.messages import (
     Welcome,
     service_message,
 )
+from mend.server.camera_picture import CameraPicture
 from mend.server.journal.journal import JournalReadError, Receipt
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.limits import Limits
@@ -530,7 +531,7 @@ async def test_a_picture_is_asked_for_and_comes(registry: RobotRegistry) -> None
     assert isinstance(command, Command)
     jpeg = base64.b64encode(A_PICTURE).decode()
     await robot.say(Picture(command=command.id, camera="head", jpeg=jpeg))
-    assert await asked == A_PICTURE
+    assert await asked == CameraPicture(A_PICTURE)
 
 
 async def test_a_picture_that_does_not_come_is_a_conflict(registry: RobotRegistry) -> None:

@@ -93,3 +93,14 @@ def test_darkness_meanwhile_is_nothing_to_compare_with() -> None:
     looks = DialogueLooks(context, None)
     dark = seeing(HERE, blind="the picture is black")
     assert looks.undone(about_cup(), dark, fulfilled=False) is None
+
+
+@pytest.mark.parametrize(("said_at", "looked_at"), [(None, 12.0), (5.0, 5.0)])
+def test_who_says_that_it_is_done_needs_no_more_time_for_it(
+    said_at: float | None, looked_at: float
+) -> None:
+    context: Any = None
+    dialogue = about_cup()
+    dialogue.reported = None if said_at is None else SimpleNamespace(time=said_at)
+    awaiting: Any = SimpleNamespace(help=Help.PUT_BACK, time=2.0, until=32.0)
+    assert DialogueLooks(context, None).help_looked_for_from(dialogue, awaiting) == looked_at

@@ -5,7 +5,7 @@ import pytest
 
 pytest.importorskip("pocketsphinx", reason="pocketsphinx is not installed")
 
-from mend.server.speech.commands import Command, phrase_commands
+from mend.server.speech.commands import Command
 from mend.server.speech.decoding import Hypothesis
 from mend.server.speech.endpointing import SAMPLE_RATE_HZ
 from mend.server.speech.recognizer import (
@@ -16,6 +16,7 @@ from mend.server.speech.recognizer import (
     SpeechBegan,
     Utterance,
 )
+from mend.server.speech.vocabulary import phrase_commands
 
 
 class ToldDecoder:

@@ -24,15 +24,7 @@ export function Countdown({ question }: { question: Question }) {
   const late = left <= WARN_S;
   return (
     <div class={`countdown ${late ? "late" : ""}`}>
-      <p class="countdown-time" role="timer" aria-live="off">
-        <svg viewBox="0 0 20 20" width="20" height="20" aria-hidden="true">
-          <circle cx="10" cy="10" r="8" class="ring" />
-          <circle cx="10" cy="10" r="8" class="ring-left" pathLength="100" stroke-dasharray={dashes(left, prompt.within_s)} />
-        </svg>
-        <span class="unseen">The robot waits for </span>
-        {clock(left)}
-        <span class="unseen"> more.</span>
-      </p>
+      <TimeLeft left={left} within={prompt.within_s} what="The robot waits for" />
       <p class="unseen" role="status">
         {late && left > 0 ? "Less than 25 seconds are left to answer. You can ask for more time." : ""}
       </p>
@@ -47,6 +39,21 @@ export function Countdown({ question }: { question: Question }) {
         </p>
       )}
     </div>
+  );
+}
+
+/** A ring that runs out, and the time that is left; `what` is said before that where it is read out. */
+export function TimeLeft({ left, within, what }: { left: number; within: number | null; what: string }) {
+  return (
+    <p class="countdown-time" role="timer" aria-live="off">
+      <svg viewBox="0 0 20 20" width="20" height="20" aria-hidden="true">
+        <circle cx="10" cy="10" r="8" class="ring" />
+        <circle cx="10" cy="10" r="8" class="ring-left" pathLength="100" stroke-dasharray={dashes(left, within)} />
+      </svg>
+      <span class="unseen">{what} </span>
+      {clock(left)}
+      <span class="unseen"> more.</span>
+    </p>
   );
 }
 

@@ -10,7 +10,7 @@ import { AskingPlace } from "./asking_place";
 import { ClaimStrip } from "./claim_strip";
 import { actOn, release } from "./claiming";
 import { Countdown } from "./countdown";
-import { FaultPicture } from "./fault_picture";
+import { WhatWasSeen } from "./fault_picture";
 import { faultInWords, robotName, spoken } from "./fault_words";
 import { PausedNode } from "./paused_node";
 import { SpeechControls } from "./speech_controls";
@@ -55,7 +55,7 @@ export function QuestionCard({ question, besideTree = false }: QuestionCardProps
       </div>
       <div class="question-body">
         <div class="question-seen" onPointerDown={act} onKeyDown={act}>
-          <FaultPicture question={question} />
+          <WhatWasSeen question={question} />
           <AskingPlace question={question} />
         </div>
         <div class="question-answers" onPointerMove={act} onPointerDown={act} onFocusCapture={act}>

@@ -3,9 +3,11 @@ import { helperName } from "../state/preferences";
 import { type Question, stopHelping, type Together } from "../state/questions";
 import type { Help } from "../wire/types";
 import { AskingPlace } from "./asking_place";
-import { clock, useSecondsUntil } from "./countdown";
+import { TimeLeft, useSecondsUntil } from "./countdown";
 import { robotName, spoken } from "./fault_words";
+import { HelpCamera, seenBy } from "./help_camera";
 import { PausedNode } from "./paused_node";
+import { PromiseButtons } from "./promise_buttons";
 import "./waiting_cards.css";
 
 const PROMISES: Readonly<Record<Help, (part: string) => string>> = {
@@ -51,21 +53,28 @@ export function AwaitedHelpCard({ question, besideTree = false }: AwaitedHelpPro
   const part = spoken(question.object ?? question.name);
   return (
     <article class="waiting panel" aria-label={`${robotName(question.robot)} awaits help`}>
-      <p class="question-about">
-        <strong>{robotName(question.robot)}</strong>
-        <a href={`/runs/${question.run}`}>Look at the run</a>
-      </p>
-      {question.prompt?.kind === "say" && <p class="waiting-said">{question.prompt.text}</p>}
+      <header class="waiting-head">
+        <p class="question-about">
+          <strong>{robotName(question.robot)}</strong>
+          <a href={`/runs/${question.run}`}>Look at the run</a>
+        </p>
+        <Watching question={question} />
+      </header>
+      {question.prompt?.kind === "say" && (
+        <p class="waiting-said" role="status">
+          {question.prompt.text}
+        </p>
+      )}
       {help !== null && (
         <p>
           {help.helper === helperName.value ? "You said you" : `${help.helper} said they`}{" "}
           {PROMISES[help.help](part)}. {expected(question, help.help, part)}
         </p>
       )}
+      <PromiseButtons question={question} />
+      {help !== null && seenBy(question) !== null && <HelpCamera question={question} camera={seenBy(question)!} />}
       <AskingPlace question={question} />
-      <p class="watching quiet small">
-        It goes on by itself as soon as it sees that. There is nothing to press. <Watching question={question} />
-      </p>
+      <p class="watching quiet small">It goes on by itself as soon as it sees that.</p>
       {!besideTree && <PausedNode run={question.run} node={question.node} name={question.name} />}
     </article>
   );
@@ -74,8 +83,9 @@ export function AwaitedHelpCard({ question, besideTree = false }: AwaitedHelpPro
 /** How much longer it watches for what was promised. */
 function Watching({ question: { run, help } }: { question: Question }) {
   const left = useSecondsUntil(run, help?.until ?? null);
-  if (left === null) return null;
-  return left > 0 ? <>It gives you {clock(left)} more.</> : <>Its time for that is over: it looks once more.</>;
+  if (left === null || help === null) return null;
+  if (left > 0) return <TimeLeft left={left} within={help.within_s} what="It gives you" />;
+  return <p class="quiet small">Its time for that is over: it looks once more.</p>;
 }
 
 export function TogetherCard({ together }: { together: Together }) {

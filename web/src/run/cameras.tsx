@@ -1,10 +1,10 @@
 // What the robot's cameras see: live while the run goes on, else what is kept of the moment shown.
-import { useComputed } from "@preact/signals";
-import { useEffect, useRef, useState } from "preact/hooks";
-import { connection, onEvent } from "../state/service";
+import { useEffect, useState } from "preact/hooks";
+import { onEvent } from "../state/service";
 import * as rest from "../wire/rest";
 import type { RunStatus } from "../wire/types";
 import { type KeptPicture, keptPictures, pictureNear } from "./camera_record";
+import { useLivePicture } from "./live_picture";
 import type { Moment } from "./moment";
 import "./cameras.css";
 
@@ -12,10 +12,6 @@ const CAMERAS = [
   ["head", "Head camera"],
   ["forearm", "Forearm camera"],
 ] as const;
-
-const EVERY_MS = 300;
-const AFTER_REFUSAL_MS = 2_000;
-const GONE = 404;
 
 interface Props {
   run: string;
@@ -84,88 +80,10 @@ function PastPicture(props: { kept: readonly KeptPicture[]; camera: string; titl
 }
 
 function LivePicture({ run, camera, title }: { run: string; camera: string; title: string }) {
-  const frame = useRef<HTMLDivElement>(null);
-  const [picture, setPicture] = useState<string | null>(null);
-  const [reason, setReason] = useState("");
-  const connected = useComputed(() => connection.value === "connected").value;
-  useEffect(() => {
-    if (!connected || frame.current === null) return;
-    let shown: string | null = null;
-    const show = (next: Blob | null) => {
-      if (shown !== null) URL.revokeObjectURL(shown);
-      shown = next === null ? null : URL.createObjectURL(next);
-      setPicture(shown);
-    };
-    const stop = whileVisible(frame.current, () =>
-      follow(run, camera, show, (sentence) => {
-        show(null);
-        setReason(sentence);
-      }),
-    );
-    return () => {
-      stop();
-      show(null);
-    };
-  }, [run, camera, connected]);
+  const { frame, live } = useLivePicture({ run, camera });
   return (
     <div ref={frame} class="camera-frame">
-      {picture === null ? (
-        <p class="camera-none">{connected ? reason || "Waiting for a picture …" : "No picture: the connection is lost."}</p>
-      ) : (
-        <img src={picture} alt={`${title}, live`} />
-      )}
+      {live.picture === null ? <p class="camera-none">{live.reason}</p> : <img src={live.picture} alt={`${title}, live`} />}
     </div>
   );
-}
-
-/** Ask for one picture after the other until stopped; none is asked for before the last one has come. */
-function follow(run: string, camera: string, show: (picture: Blob) => void, missing: (why: string) => void) {
-  let stopped = false;
-  let timer = 0;
-  const ask = async () => {
-    let pause = EVERY_MS;
-    try {
-      const picture = await rest.cameraPicture(run, camera);
-      if (!stopped) show(picture);
-    } catch (error) {
-      pause = AFTER_REFUSAL_MS;
-      if (!stopped) missing(sentenceOn(error));
-    }
-    if (!stopped) timer = window.setTimeout(() => void ask(), pause);
-  };
-  void ask();
-  return () => {
-    stopped = true;
-    window.clearTimeout(timer);
-  };
-}
-
-function sentenceOn(error: unknown): string {
-  if (error instanceof rest.Refusal && error.status === GONE) return "No picture: the robot is not there yet, or has no such camera.";
-  return "The robot sends no picture now.";
-}
-
-/** Do something as long as an element can be seen; returns how to stop for good. */
-function whileVisible(element: Element, begin: () => () => void): () => void {
-  let inView = false;
-  let stop: (() => void) | null = null;
-  const heed = () => {
-    const seen = inView && document.visibilityState === "visible";
-    if (seen) stop ??= begin();
-    else {
-      stop?.();
-      stop = null;
-    }
-  };
-  const observer = new IntersectionObserver((entries) => {
-    inView = entries.at(-1)?.isIntersecting ?? false;
-    heed();
-  });
-  observer.observe(element);
-  document.addEventListener("visibilitychange", heed);
-  return () => {
-    observer.disconnect();
-    document.removeEventListener("visibilitychange", heed);
-    stop?.();
-  };
 }

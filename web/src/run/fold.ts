@@ -241,6 +241,7 @@ function withDialogueEvent(state: RunState, event: DialogueEvent): RunState {
       return withDialogue(state, event.dialogue, (dialogue) => ({ ...dialogue, helpAwaited: event }));
     case "help_verified":
     case "help_not_seen":
+    case "promise_taken_back":
       return withDialogue(state, event.dialogue, (dialogue) => ({ ...dialogue, helpAwaited: null }));
     case "resolved":
       return { ...state, resolutions: [...state.resolutions, event] };

@@ -2,6 +2,7 @@
 import { effect, untracked } from "@preact/signals";
 import { answer, held } from "../question/answering";
 import { actOn } from "../question/claiming";
+import { say as sayOfHelp } from "../question/promise";
 import { shown } from "../question/queue";
 import { onRepeat } from "../question/repeating";
 import { isTurnOf } from "../question/turn";
@@ -114,9 +115,10 @@ class SpokenDialogue {
       this.#about = "";
       return;
     }
+    this.#asked = statement.awaited;
     if (statement.about === this.#about) return;
     this.#about = statement.about;
-    untracked(() => void this.#say(statement.text, statement.audio));
+    untracked(() => (statement.awaited === null ? void this.#say(statement.text, statement.audio) : this.#ask(statement.awaited)));
   }
 
   #ask(question: Question): void {
@@ -202,7 +204,9 @@ class SpokenDialogue {
   #take(command: Extract<ToSpeaker, { type: "heard" }>["command"]): void {
     const question = this.#asked === null ? undefined : dialogueOf(this.#asked.dialogue);
     if (question === undefined || command === null) return;
-    actOn(question);
+    if (command === "done") sayOfHelp(question, "done");
+    if (command === "cannot") sayOfHelp(question, "take_back");
+    if (question.awaiting === "answer") actOn(question);
     if (command === "yes" || command === "no") answer(question, command);
     if (command === "stop") {
       rest.pauseRun(question.run).then(
@@ -217,10 +221,20 @@ function soundOf(question: Question): string | null {
   return question.prompt === null ? null : rest.promptSoundPath(question.dialogue, question.prompt.prompt);
 }
 
-function newestStatement(): { about: string; text: string; audio: string | null } | null {
+interface Statement {
+  readonly about: string;
+  readonly text: string;
+  readonly audio: string | null;
+  /** The dialogue in which help is awaited that this helper has promised. */
+  readonly awaited: Question | null;
+}
+
+function newestStatement(): Statement | null {
   const waiting = awaitingHelp.value.find((each) => each.prompt?.kind === "say" && each.help?.helper === helperName.value);
-  if (waiting?.prompt) return { about: waiting.prompt.prompt, text: waiting.prompt.text, audio: soundOf(waiting) };
+  if (waiting?.prompt) {
+    return { about: waiting.prompt.prompt, text: waiting.prompt.text, audio: soundOf(waiting), awaited: waiting };
+  }
   const last = together.value.at(-1);
   if (last === undefined) return null;
-  return { about: last.dialogue, text: last.text, audio: rest.promptSoundPath(last.dialogue, last.prompt) };
+  return { about: last.dialogue, text: last.text, audio: rest.promptSoundPath(last.dialogue, last.prompt), awaited: null };
 }

@@ -1,6 +1,16 @@
 // The open dialogues across all runs, folded from the service's events.
 import { computed, signal } from "@preact/signals";
-import type { DialogueView, Event, IssueRaised, Prompt, Resolution } from "../wire/types";
+import type {
+  AwaitedHelp,
+  DialogueView,
+  Event,
+  HelpNotSeen,
+  HelpNotSeenYet,
+  IssueRaised,
+  Prompt,
+  Resolution,
+  UnseenHelpView,
+} from "../wire/types";
 import { closing, tellEnding, tellHowItEnded } from "./endings";
 import { readRunClock } from "./run_clock";
 
@@ -126,11 +136,22 @@ function change(before: Question, event: Extract<Event, { dialogue: string | nul
       put({
         ...before,
         awaiting: "help",
-        help: { help: event.help, helper: event.helper, until: event.until },
+        help: awaited(event),
       });
       return;
-    case "help_verified":
+    case "help_reported":
+      if (before.help !== null) put({ ...before, help: { ...before.help, reported_by: event.helper } });
+      return;
+    case "help_not_seen_yet":
+      if (before.help !== null) {
+        put({ ...before, help: { ...before.help, reported_by: null }, unseen_help: unseen(event) ?? before.unseen_help });
+      }
+      return;
     case "help_not_seen":
+      put({ ...before, awaiting: null, help: null, unseen_help: unseen(event) ?? before.unseen_help });
+      return;
+    case "help_verified":
+    case "promise_taken_back":
       put({ ...before, awaiting: null, help: null });
       return;
     case "resolved":
@@ -142,6 +163,15 @@ function change(before: Question, event: Extract<Event, { dialogue: string | nul
     default:
       return;
   }
+}
+
+function awaited({ help, helper, until, time, guess }: Extract<Event, { type: "help_awaited" }>): AwaitedHelp {
+  return { help, helper, until, within_s: until - time, reported_by: null, at_a_word: guess === null };
+}
+
+/** What the camera showed of it; null where it showed nothing. */
+function unseen({ time, picture, detection }: HelpNotSeen | HelpNotSeenYet): UnseenHelpView | null {
+  return picture === null ? null : { time, picture, detection };
 }
 
 function prompted(before: Question, event: Prompt): Question {
@@ -181,6 +211,7 @@ function opened(event: Extract<Event, { type: "dialogue_opened" }>): Question {
     clip: [],
     detection: issue?.detection ?? null,
     help: null,
+    unseen_help: null,
     opened: event.seq,
   };
 }

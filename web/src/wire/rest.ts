@@ -2,6 +2,7 @@
 import type {
   Answered,
   AskedRobotView,
+  Detection,
   DialogueView,
   Event,
   FleetView,
@@ -237,8 +238,21 @@ export const picturePath = (picture: string) => `/api/pictures/${segment(picture
 export const cameraPath = (run: string, camera: string) =>
   `/api/runs/${segment(run)}/cameras/${segment(camera)}`;
 
-/** What a camera of the run's robot sees now. */
-export const cameraPicture = async (run: string, camera: string) => (await read(cameraPath(run, camera))).blob();
+export interface CameraPicture {
+  readonly blob: Blob;
+  /** Where in it the robot looks for what it looks for; null where it looks for nothing, or cannot say. */
+  readonly detection: Detection | null;
+}
+
+const DETECTION_HEADER = "Mend-Detection";
+
+/** What a camera of a run's robot sees now; of the first that has such a camera without a name. */
+export async function cameraPicture(run: string, camera: string, robot?: string): Promise<CameraPicture> {
+  const of = robot === undefined ? "" : `?robot=${segment(robot)}`;
+  const answer = await read(`${cameraPath(run, camera)}${of}`);
+  const told = answer.headers.get(DETECTION_HEADER);
+  return { blob: await answer.blob(), detection: told === null ? null : (JSON.parse(told) as Detection) };
+}
 
 export const layout = (run: string) => call<Layout>("GET", `/api/runs/${segment(run)}/layout`);
 

@@ -9,6 +9,7 @@ from drawn_scene import Resting
 from robot_bench import RobotBench
 from scripted_body import HAND_OVER, NEUTRAL, PLACES, STARTS
 
+from mend.robots.link.jpeg import read_jpeg
 from mend.robots.link.messages import (
     Finished,
     FinishedResult,
@@ -53,6 +54,42 @@ def test_the_arm_clears_the_view_first() -> None:
     bench.look()
     bench.run()
     assert bench.body.tool == NEUTRAL
+
+
+def test_what_is_not_at_its_place_is_shown_with_where_it_is_and_is_to_be() -> None:
+    bench = RobotBench()
+    bench.look(expect="at_place", object="pink_bar", place="left", within_s=1.0)
+    seen = looked(bench)
+    assert seen.fulfilled is False
+    assert seen.jpeg is not None
+    assert read_jpeg(seen.jpeg)
+    assert seen.detection is not None
+    assert (seen.detection.camera, seen.detection.area_px > 0) == ("head", True)
+    width_px, height_px = seen.detection.size_px or (0, 0)
+    for point in (seen.detection.center, seen.detection.expected):
+        assert point is not None
+        assert 0 <= point[0] < width_px
+        assert 0 <= point[1] < height_px
+    assert seen.detection.center != seen.detection.expected
+    assert (seen.detection.tolerance_px or 0.0) > 2.0
+
+
+def test_of_what_is_so_no_picture_is_sent() -> None:
+    bench = RobotBench()
+    bench.look(expect="in_reach", object="pink_bar", within_s=2.0)
+    seen = looked(bench)
+    assert seen.fulfilled
+    assert (seen.jpeg, seen.detection) == (None, None)
+
+
+def test_what_is_not_held_out_is_shown_by_the_forearm_camera() -> None:
+    bench = RobotBench()
+    bench.look(expect="in_gripper", object="pink_bar", within_s=1.0)
+    seen = looked(bench)
+    assert seen.fulfilled is False
+    assert seen.jpeg is not None
+    assert seen.detection is not None
+    assert seen.detection.camera == "forearm"
 
 
 def test_what_comes_to_its_place_in_time_is_seen() -> None:
