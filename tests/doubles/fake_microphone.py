@@ -2,9 +2,9 @@
 
 import subprocess
 from pathlib import Path
-from shutil import which
 
 import numpy as np
+from bare_chromium import launch
 from playwright.async_api import Browser, Playwright
 from scipy.io import wavfile
 from scipy.signal import resample_poly
@@ -36,14 +36,10 @@ async def launch_speaking(
     `again`: and then every few seconds.
     """
     sound = f"{utter(words, folder)}{'' if again else '%noloop'}"
-    return await playwright.chromium.launch(
-        executable_path=which("chromium") or which("google-chrome"),
-        headless=True,
-        args=[
-            "--no-sandbox",
-            "--use-fake-device-for-media-stream",
-            "--use-fake-ui-for-media-stream",
-            f"--use-file-for-fake-audio-capture={sound}",
-            "--autoplay-policy=no-user-gesture-required",
-        ],
+    return await launch(
+        playwright,
+        "--use-fake-device-for-media-stream",
+        "--use-fake-ui-for-media-stream",
+        f"--use-file-for-fake-audio-capture={sound}",
+        "--autoplay-policy=no-user-gesture-required",
     )
