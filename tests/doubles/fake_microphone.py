@@ -7,7 +7,6 @@ import numpy as np
 from bare_chromium import launch
 from playwright.async_api import Browser, Playwright
 from scipy.io import wavfile
-from scipy.signal import resample_poly
 
 RATE_HZ = 48_000
 """What browsers expect of such a file."""
@@ -19,6 +18,9 @@ PAUSE_S = 3.0
 
 def utter(words: str, folder: Path) -> Path:
     """A microphone's sound: some silence, the words, and silence again."""
+    # Takes long to import, and hardly any process that collects the tests needs it.
+    from scipy.signal import resample_poly
+
     file = folder / f"{words.replace(' ', '_')}.wav"
     subprocess.run(["flite", "-voice", "slt", "-t", words, "-o", file], check=True)
     rate_hz, said = wavfile.read(file)
