@@ -7,9 +7,9 @@ from playwright.async_api import Browser, Playwright
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 
 # For each page of ours it would draw the list under a location bar that nobody sees, and hold
-# another process ready, which takes twice as long as our page itself.
+# another process ready: more work than our page itself.
 UNSEEN = ("WebUIOmniboxPopup", "WebUIOmniboxAimPopup", "SpareRendererForSitePerProcess")
-# Of several lists only the last one counts: these are what Playwright itself switches off.
+# Of several lists only the last one counts: these Playwright itself switches off on Linux.
 SWITCHED_OFF = (
     "AvoidUnnecessaryBeforeUnloadCheckSync",
     "DestroyProfileOnBrowserClose",
