@@ -2,12 +2,11 @@
 
 import subprocess
 from pathlib import Path
-from shutil import which
 
 import numpy as np
+from bare_chromium import launch
 from playwright.async_api import Browser, Playwright
 from scipy.io import wavfile
-from scipy.signal import resample_poly
 
 RATE_HZ = 48_000
 """What browsers expect of such a file."""
@@ -19,6 +18,9 @@ PAUSE_S = 3.0
 
 def utter(words: str, folder: Path) -> Path:
     """A microphone's sound: some silence, the words, and silence again."""
+    # Takes long to import, and hardly any process that collects the tests needs it.
+    from scipy.signal import resample_poly
+
     file = folder / f"{words.replace(' ', '_')}.wav"
     subprocess.run(["flite", "-voice", "slt", "-t", words, "-o", file], check=True)
     rate_hz, said = wavfile.read(file)
@@ -36,14 +38,10 @@ async def launch_speaking(
     `again`: and then every few seconds.
     """
     sound = f"{utter(words, folder)}{'' if again else '%noloop'}"
-    return await playwright.chromium.launch(
-        executable_path=which("chromium") or which("google-chrome"),
-        headless=True,
-        args=[
-            "--no-sandbox",
-            "--use-fake-device-for-media-stream",
-            "--use-fake-ui-for-media-stream",
-            f"--use-file-for-fake-audio-capture={sound}",
-            "--autoplay-policy=no-user-gesture-required",
-        ],
+    return await launch(
+        playwright,
+        "--use-fake-device-for-media-stream",
+        "--use-fake-ui-for-media-stream",
+        f"--use-file-for-fake-audio-capture={sound}",
+        "--autoplay-policy=no-user-gesture-required",
     )

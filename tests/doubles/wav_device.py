@@ -6,7 +6,6 @@ import wave
 from collections.abc import AsyncIterator
 
 import numpy as np
-from scipy.signal import resample_poly
 
 FRAME_BYTES = 640
 FRAME_S = 0.02
@@ -43,6 +42,9 @@ class WavDevice:
 
 def pcm_of(wav: bytes) -> bytes:
     """The samples of a WAV file as a microphone would send them."""
+    # Takes long to import, and hardly any process that collects the tests needs it.
+    from scipy.signal import resample_poly
+
     with wave.open(io.BytesIO(wav)) as sound:
         rate_hz = sound.getframerate()
         samples = np.frombuffer(sound.readframes(sound.getnframes()), np.int16)

@@ -1,12 +1,12 @@
 """A real browser on a real service: what every test of the console starts from."""
 
 import contextlib
-import shutil
 from collections.abc import AsyncIterator
 from pathlib import Path
 
 import pytest
 import pytest_asyncio
+from bare_chromium import CHROMIUM, launch
 from console_in_browser import TOKEN, OpenPage, Stage
 from played_dialogues import PlayedDialogues
 from playwright.async_api import (
@@ -24,7 +24,6 @@ from mend.server.composition import Service, open_service
 from mend.server.runtime.requests import RunRequest
 from mend.server.settings import Settings
 
-CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 HERE = Path(__file__).parent
 
 # Patience costs nothing where all is well, and a busy machine may be slow.
@@ -48,9 +47,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest_asyncio.fixture(scope="session", loop_scope="session")
 async def browser() -> AsyncIterator[Browser]:
     async with async_playwright() as playwright:
-        browser = await playwright.chromium.launch(
-            executable_path=CHROMIUM, headless=True, args=["--no-sandbox"]
-        )
+        browser = await launch(playwright)
         yield browser
         await browser.close()
 

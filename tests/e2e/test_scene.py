@@ -1,7 +1,6 @@
 """The run's scene in 3-D: it draws, it moves, and a person can intervene in it."""
 
 import math
-import shutil
 from collections.abc import AsyncIterator
 from uuid import UUID
 
@@ -9,6 +8,7 @@ import cv2
 import numpy as np
 import pytest
 import pytest_asyncio
+from bare_chromium import launch
 from console_in_browser import TOKEN, OpenPage
 from console_situations import begin_two_boxes
 from numpy.typing import NDArray
@@ -222,13 +222,8 @@ async def test_replay_shows_where_everything_was(service: Service, open_page: Op
 
 @pytest_asyncio.fixture(loop_scope="session")
 async def browser_without_webgl() -> AsyncIterator[Browser]:
-    path = shutil.which("chromium") or shutil.which("google-chrome")
     async with async_playwright() as playwright:
-        browser = await playwright.chromium.launch(
-            executable_path=path,
-            headless=True,
-            args=["--no-sandbox", "--disable-gpu", "--disable-webgl", "--disable-3d-apis"],
-        )
+        browser = await launch(playwright, "--disable-gpu", "--disable-webgl", "--disable-3d-apis")
         yield browser
         await browser.close()
 

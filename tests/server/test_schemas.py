@@ -7,7 +7,7 @@ import jsonschema_rs
 import pytest
 from sample_events import paused, started
 
-from mend.server.schemas import asyncapi, json_schemas, openapi
+from mend.server.schemas import SCHEMAS, asyncapi, json_schemas, openapi
 
 
 def references(node: Any) -> Iterator[str]:
@@ -36,16 +36,25 @@ def test_every_reference_leads_somewhere(describe: Any) -> None:
         assert resolve(document, reference) is not None
 
 
-@pytest.mark.parametrize("name", json_schemas())
-def test_json_schema_is_valid_and_whole(name: str) -> None:
-    schema = json_schemas()[name]
+@pytest.fixture(scope="module")
+def schemas() -> dict[str, dict[str, Any]]:
+    return json_schemas()
+
+
+def test_everything_that_goes_over_a_wire_has_a_schema(schemas: dict[str, dict[str, Any]]) -> None:
+    assert schemas.keys() == SCHEMAS.keys()
+
+
+@pytest.mark.parametrize("name", SCHEMAS)
+def test_json_schema_is_valid_and_whole(schemas: dict[str, dict[str, Any]], name: str) -> None:
+    schema = schemas[name]
     jsonschema_rs.meta.validate(schema)
     for reference in references(schema):
         assert resolve(schema, reference) is not None
 
 
-def test_event_schema_accepts_events_and_nothing_else() -> None:
-    validator = jsonschema_rs.Draft202012Validator(json_schemas()["event"])
+def test_event_schema_accepts_events_and_nothing_else(schemas: dict[str, dict[str, Any]]) -> None:
+    validator = jsonschema_rs.Draft202012Validator(schemas["event"])
     for event in (started(), paused()):
         validator.validate(event.model_dump(mode="json"))
     assert not validator.is_valid({**paused().model_dump(mode="json"), "type": "unheard_of"})
