@@ -28,6 +28,8 @@ OF_NO_RUN = {
     "errand_begun",
     "errand_ended",
     "plan_changed",
+    "push_ended",
+    "push_subscribed",
     "request_changed",
     "sign_in_failed",
     "signed_in",
