@@ -2,7 +2,6 @@
 
 import asyncio
 import logging
-import ssl
 import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
@@ -42,7 +41,7 @@ from mend.server.runtime.context import RunSettings
 from mend.server.runtime.operator_mail import OperatorMail
 from mend.server.runtime.runtime import Runtime
 from mend.server.scene_checks import WorldChecks
-from mend.server.server_tls import server_tls
+from mend.server.server_tls import tls_of
 from mend.server.serving import Server, serve_config
 from mend.server.session_key import session_key
 from mend.server.settings import Settings, is_everywhere
@@ -131,7 +130,7 @@ async def _open(
     # What runs need later is loaded now: there may be no descriptor left to open it with then.
     for group in ("mend.behaviors", "mend.monitors"):
         load_plugins(group)
-    tls = _tls(settings)
+    tls = tls_of(settings)
     config_socket = listen(settings)
     url = f"{'https' if tls else 'http'}://{reachable_host(settings.host)}:{config_socket.getsockname()[1]}"
     off_loop = OffLoop(settings.limits)
@@ -309,12 +308,6 @@ def _pose_records(settings: Settings) -> PoseRecords | None:
     if not settings.record_poses or str(settings.journal_path) == IN_MEMORY:
         return None
     return PoseRecords(settings.journal_path.with_suffix(".poses"))
-
-
-def _tls(settings: Settings) -> ssl.SSLContext | None:
-    if settings.tls_certificate is None or settings.tls_key is None:
-        return None
-    return server_tls(settings.tls_certificate, settings.tls_key)
 
 
 def _operator_mail(settings: Settings, public_url: str | None) -> OperatorMail:

@@ -4,7 +4,14 @@ import ssl
 from pathlib import Path
 
 from mend.errors import MendError
-from mend.server.settings import WrongSettingsError
+from mend.server.settings import Settings, WrongSettingsError
+
+
+def tls_of(settings: Settings) -> ssl.SSLContext | None:
+    """What a service with these settings encrypts with; None if with nothing."""
+    if settings.tls_certificate is None or settings.tls_key is None:
+        return None
+    return server_tls(settings.tls_certificate, settings.tls_key)
 
 
 def server_tls(certificate: Path, key: Path) -> ssl.SSLContext:

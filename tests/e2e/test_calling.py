@@ -89,6 +89,26 @@ async def test_a_page_is_called_by_push_and_called_off_again(
     assert service_devices(service) == []
 
 
+async def test_a_page_in_the_background_shows_a_question_until_it_is_closed(
+    stage: Stage, pushes: PushService
+) -> None:
+    page = await stage.open_page()
+    browser = PushedBrowser(page, pushes, "desktop")
+    await browser.begin()
+    await page.evaluate("localStorage.setItem('mend.notifications_on', 'true')")
+    await page.reload()
+    await page.get_by_role("status").filter(has_text="Connected").wait_for()
+    await page.evaluate("document.hasFocus = () => false")
+    dialogue = await stage.runs.open(stage.run, "dropped")
+    await browser.shows_something()
+    [shown] = await browser.notices()
+    assert (shown["title"], shown["tag"]) == ("PR2 asks for help", str(dialogue))
+    await page.locator(".answer.yes").click()
+    async with asyncio.timeout(60):
+        while await browser.notices():  # noqa: ASYNC110 - the browser tells nobody
+            await asyncio.sleep(0.02)
+
+
 async def test_the_trial_says_truthfully_whether_this_device_calls(
     service: Service, open_page: OpenPage, pushes: PushService
 ) -> None:

@@ -1,5 +1,6 @@
 // A device that stands beside a robot: its screen stays on, questions are spoken, and it listens from the start.
 import { signal } from "@preact/signals";
+import { may } from "../state/access";
 import { speechPhase } from "../speech/speech_state";
 import { switchOff, switchOn } from "../speech/speech_switch";
 import { unlock } from "./sounds";
@@ -14,7 +15,7 @@ export function standBeside(): () => void {
   });
   // Says beforehand where the page cannot be heard, and not only when a robot asks.
   void unlock();
-  if (speechPhase.peek() === "off") void switchOn().catch(() => undefined);
+  if (may("helper") && speechPhase.peek() === "off") void switchOn().catch(() => undefined);
   return () => {
     release();
     awake.value = null;

@@ -1,5 +1,5 @@
 // Notifications that the page itself shows while it is in the background.
-import { type Question } from "../state/questions";
+import type { Question } from "../state/questions";
 import { callNotice } from "./notices";
 import { whyNoWorker, worker } from "./registration";
 
@@ -14,4 +14,11 @@ export async function notify(question: Question): Promise<void> {
   } catch {
     // The helper has taken the permission back: the page itself says what is asked.
   }
+}
+
+/** Nobody is asked any more in these dialogues. */
+export async function takeAway(dialogues: readonly string[]): Promise<void> {
+  if (whyNoWorker() !== null) return;
+  const shown = (await (await navigator.serviceWorker.getRegistration())?.getNotifications()) ?? [];
+  for (const each of shown) if (dialogues.includes(each.tag)) each.close();
 }

@@ -9,12 +9,17 @@ import { isTurnOf } from "./turn";
 export const newest = signal<Question | null>(null);
 
 const known = new Set<string>();
+/** The dialogues that a notification of this page is about. */
+const noticed = new Set<string>();
 
 effect(() => {
   const open = questions.value.filter((each) => isTurnOf(helperName.value, each));
   const fresh = open.filter((each) => each.prompt !== null && !known.has(ringOf(each)));
   for (const each of fresh) known.add(ringOf(each));
+  const gone = [...noticed].filter((dialogue) => open.every((each) => each.dialogue !== dialogue));
+  for (const dialogue of gone) noticed.delete(dialogue);
   untracked(() => {
+    if (gone.length > 0) void import("../calling/page_notices").then(({ takeAway }) => takeAway(gone));
     const last = fresh.at(-1);
     if (last !== undefined) arrive(last);
     else if (!open.some((each) => each.prompt?.prompt === newest.value?.prompt?.prompt)) newest.value = null;
@@ -27,5 +32,6 @@ function arrive(question: Question): void {
   // A device that is called by push shows the same thing by that.
   if (!notificationsOn.value || pushOn.value) return;
   if (!("Notification" in window) || Notification.permission !== "granted") return;
+  noticed.add(question.dialogue);
   void import("../calling/page_notices").then(({ notify }) => notify(question));
 }

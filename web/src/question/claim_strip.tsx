@@ -37,7 +37,8 @@ function NobodyOnIt({ question }: { question: Question }) {
   const asked = askedNow(question);
   const others = asked !== null && asked !== helperName.value;
   const off = isPutOff(question);
-  const who = off ? "You are not called about it here." : asked === null ? "Nobody is on it yet." : others ? `${asked} is asked now.` : "You are asked now.";
+  const turn = asked === null ? "Nobody is on it yet." : others ? `${asked} is asked now.` : "You are asked now.";
+  const who = off ? "You are not called about it here." : turn;
   return (
     <div class={`claim ${others ? "others" : ""}`}>
       <p class={others ? undefined : "quiet"}>{who}</p>
