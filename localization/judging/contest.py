@@ -6,6 +6,7 @@ posterior passes a threshold is accepted.
 
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,8 @@ ERROR_PROBABILITY = 1e-3
 """How often an accepted hypothesis may be the wrong one, were the model exact."""
 MOST_PER_SCAN = 2.0
 """Nats by which one scan may speak against a hypothesis, so that no single one ever decides."""
+_AGREED_BEHIND = float(np.log(1.0 / ERROR_PROBABILITY))
+"""Nats by which "neither" begins behind where the tracks agree: two are seldom wrong alike."""
 _MOST_BEHIND = 2.0 * float(np.log(1.0 / ERROR_PROBABILITY))
 """Nats by which a hypothesis may fall behind, so that it is not ruled out for good."""
 
@@ -35,6 +38,11 @@ class Contest:
     """Log-weights of the hypotheses, the best at 0."""
 
     weights: Weights = field(default_factory=lambda: np.zeros(len(Hypothesis)))
+
+    @classmethod
+    def of_agreement(cls) -> Self:
+        """A contest while both tracks are together."""
+        return cls(np.array([0.0, 0.0, -_AGREED_BEHIND]))
 
     def weigh(self, log_likelihoods: Weights) -> None:
         """Take what one scan says of each hypothesis."""

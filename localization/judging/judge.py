@@ -21,8 +21,8 @@ from mend.localization.pose import Poses, compose, relative
 from mend.maps.vector_map import VectorMap
 
 _WEIGHED_EVERY_M = 0.1
-_WEIGHED_EVERY_RAD = np.radians(5.0)
-"""Scans from one place are weighed once: again and again they would say nothing new."""
+_WEIGHED_EVERY_RAD = np.radians(30.0)
+"""Scans from one place say the same again, of a wall that is gone too: only another side is new."""
 _AGAIN = 0.5
 """Two tracks agree again once they are within this share of what parted them."""
 
@@ -121,7 +121,7 @@ class Judge:
             return Standing.HOLDS
         run = self._run
         if run is None or run.apart != apart:
-            run = self._run = _Run(Contest(), moment, apart)
+            run = self._run = _Run(Contest() if apart else Contest.of_agreement(), moment, apart)
             if not apart:
                 self._stretches.end(moment)
         self._jumped |= self._jumps(past)
