@@ -1,5 +1,6 @@
 """The wheel: everything that Mend reads at run time is in it, and nothing else is."""
 
+import json
 import os
 import re
 import subprocess
@@ -76,7 +77,8 @@ def test_console_in_the_wheel_has_every_asset_that_it_names(wheel: Path) -> None
     folder = "mend/server/api/console/built/"
     with zipfile.ZipFile(wheel) as archive:
         names = {name for name in archive.namelist() if name.startswith(folder)}
-        text = {name: archive.read(name).decode() for name in names if not name.endswith(".gz")}
+        written = (name for name in names if not name.endswith((".gz", ".png")))
+        text = {name: archive.read(name).decode() for name in written}
     assert f"{folder}icon.svg" in names
     named = set(ASSET.findall(text[f"{folder}index.html"]))
     assert {Path(name).suffix for name in named} == {".js", ".css"}
@@ -84,6 +86,8 @@ def test_console_in_the_wheel_has_every_asset_that_it_names(wheel: Path) -> None
         named |= {f"assets/{each}" for each in IMPORT.findall(text[script])}
     assert {f"{folder}{each}" for each in named} <= names
     assert {f"{name}.gz" for name in text} <= names
+    icons = json.loads(text[f"{folder}manifest.webmanifest"])["icons"]
+    assert {f"{folder}{icon['src'].removeprefix('/')}" for icon in icons} <= names
 
 
 def test_wheel_says_its_licence_and_keeps_pybullet_an_extra(wheel: Path) -> None:
