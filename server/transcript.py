@@ -124,6 +124,8 @@ class Transcript:
         | ev.SignInFailed
         | ev.SignedOut
         | ev.AccessChanged
+        | ev.PushSubscribed
+        | ev.PushEnded
         | ev.SiteOpened
         | ev.SiteGivenBack
         | ev.SiteRestarted

@@ -65,7 +65,9 @@ async def told_ending(service: Service, open_page: OpenPage) -> Page:
 async def waiting_for_help(service: Service, open_page: OpenPage) -> Page:
     page = await open_question(service, open_page)
     await page.get_by_role("button", name="YES").click()
-    await expect(page.get_by_role("button", name="Done, look again")).to_be_visible(timeout=PATIENCE_MS)
+    await expect(page.get_by_role("button", name="Done, look again")).to_be_visible(
+        timeout=PATIENCE_MS
+    )
     return page
 
 
