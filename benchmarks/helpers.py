@@ -15,6 +15,7 @@ import statistics
 import tempfile
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable
+from dataclasses import MISSING, fields
 from datetime import UTC, datetime
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -214,9 +215,10 @@ async def mend(folder: Path, helpers: int, seconds: float) -> float:
     nothing: Any = None
     settings = Settings(subscriber_queue=QUEUE)
     access = Access(None, wall_time_s=time.time)
-    app.state.services = Services(
-        runtime, journal, nothing, nothing, nothing, nothing, nothing, nothing, settings, access
-    )
+    used = {"runs": runtime, "journal": journal, "settings": settings, "access": access}
+    needed = [each for each in fields(Services) if each.default is each.default_factory is MISSING]
+    unused = {each.name: nothing for each in needed}
+    app.state.services = Services(**(unused | used))
     print(f"Mend: {helpers} helpers and a stuck one, {RUNS} runs, {seconds:.0f} s")
     p95_ms = await measure(app, lambda each: journal.append(Entry(events=[each])), helpers, seconds)
     print(f"  cut off           {journal.subscribers.overflows}")
