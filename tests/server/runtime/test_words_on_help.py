@@ -47,6 +47,10 @@ async def promised(service: PretendService, **options: Any) -> DialogueView:
     view = await view_when(service, lambda each: each.awaiting == "answer")
     assert view.prompt is not None
     await service.runtime.dialogues.answer(view.dialogue, view.prompt.prompt, "yes", "ann")
+    async with asyncio.timeout(60):
+        # What changes before it is no change that the robot sees.
+        while not of_type(await events_of(service), ev.FirstLook):
+            pass
     return await view_when(service, lambda each: each.awaiting == "help")
 
 
