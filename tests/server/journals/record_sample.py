@@ -1,4 +1,4 @@
-"""Writes the sample journal of the newest schema version: one event of every type.
+"""Writes the sample journal of the newest schema version: one event of every type that a run has.
 
 Run it once when a version is added, from the root; what it wrote is never changed again.
 """
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 from uuid import UUID
 
-from mend.dialogue.script import CloseReason, Help
+from mend.dialogue.script import CloseReason, Help, Sight
 from mend.robots.link.messages import Detection
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Document, Entry, Receipt
@@ -68,7 +68,7 @@ def answers() -> list[ev.AnswerOption]:
 
 
 def every_event() -> list[ev.Event]:
-    """One event of every type, in an order that could be."""
+    """One event of every type that a run has, in an order that could be."""
     leaf = {"behavior": "pick_and_place", "object": "pink_bar", "place": "pink_place"}
     candidate = ev.Candidate(node="/1/0", name="pink_bar", level=0.5, potential=1.7, attempts=0)
     missing = ev.MissingPart(node="/1/0", name="pink_bar", object="pink_bar", place="pink_place")
@@ -133,7 +133,11 @@ def every_event() -> list[ev.Event]:
         ),
         ev.Answered(**talk(), prompt=PROMPT, version=2, answer="yes", helper="ben"),
         ev.HelpAwaited(**talk(), help=Help.PUT_BACK, helper="ben", until=90.0),
+        ev.HelpReported(**talk(), help=Help.PUT_BACK, helper="anna"),
+        ev.HelpNotSeenYet(**talk(), help=Help.PUT_BACK, sight=Sight.UNMOVED, picture=PICTURE),
+        ev.LookedAnew(**talk(), fulfilled=[], position=None),
         ev.HelpNotSeen(**talk(), help=Help.PUT_BACK),
+        ev.PromiseTakenBack(**talk(), help=Help.PUT_BACK, helper="ben"),
         ev.InterventionDone(
             **stamp(),
             act="put_back",
@@ -152,6 +156,8 @@ def every_event() -> list[ev.Event]:
         ev.NodeUndone(**node(), robot="robot", reason="the pink bar is gone"),
         ev.NodeLeftOut(**node(), robot="robot", helper="ben"),
         ev.NodeReturned(**node(), robot="robot"),
+        ev.NodeTaken(**node(), helper="ben", until=120.0, was_at=(0.6, -0.2, 0.7)),
+        ev.WayFound(**robot(), finding="blocked", between=["F1-101", "F1-102"]),
         ev.NodeAbandoned(**node(), leaf="/1/0", reason="no robot can reach it"),
         ev.SuspectedFalseAlarm(
             **node(), robot="robot", issue="dropped", object="pink_bar", times=3, told=["operators"]
