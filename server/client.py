@@ -283,6 +283,11 @@ class MendClient:
         body = {"prompt": str(prompt), "answer": answer, "helper": helper}
         return await self._post(f"/api/dialogues/{dialogue}/answers", Answered, body)
 
+    async def choose(self, dialogue: UUID, prompt: UUID, way: str, helper: str) -> Answered:
+        """Choose one of a prompt's `ways`; the last of its answers. Raises as `answer` does."""
+        body = {"prompt": str(prompt), "way": way, "helper": helper}
+        return await self._post(f"/api/dialogues/{dialogue}/choices", Answered, body)
+
     async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> DeadlineExtended:
         """Give the open question as much time again as it was first put for."""
         path = f"/api/dialogues/{dialogue}/extend"

@@ -18,6 +18,7 @@ from mend.server.api.helper_messages import (
     Answer,
     AnyClientMessage,
     Auth,
+    Choose,
     Claim,
     Done,
     Extend,
@@ -157,6 +158,10 @@ class HelperSocket(HelperConnection[EventsQuery]):
             case Answer():
                 done: BaseModel = await runs.dialogues.answer(
                     message.dialogue, message.prompt, message.answer, helper, self._author
+                )
+            case Choose():
+                done = await runs.dialogues.choose(
+                    message.dialogue, message.prompt, message.way, helper, self._author
                 )
             case Claim():
                 done = await runs.dialogues.claim(

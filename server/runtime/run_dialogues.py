@@ -9,10 +9,14 @@ from mend.errors import ConflictError
 from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
 from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run import Run
 from mend.server.runtime.run_states import RunStates
 from mend.server.runtime.run_views import dialogue_view
 from mend.server.runtime.views import DialogueView
+
+Take = Callable[[Run, DialogueState, RobotProxy], Awaitable[ev.Answered]]
+"""Takes a helper's answer in a run, to a dialogue that a robot of it has opened."""
 
 
 class RunDialogues:
@@ -56,13 +60,40 @@ class RunDialogues:
 
         Raises `NotFoundError`, `LostRaceError` or `ConflictError`.
         """
+        return await self._answered(
+            dialogue,
+            prompt,
+            lambda run, found, proxy: run.dialogues.answer(
+                found, prompt, answer, helper, proxy, author
+            ),
+        )
+
+    async def choose(
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        way: str,
+        helper: str,
+        author: ev.Author | None = None,
+    ) -> ev.Answered:
+        """Choose a way of help at once: what it stands for is answered, and the last returned.
+
+        Raises as `answer` does, and `ConflictError` where there is no such way now.
+        """
+        return await self._answered(
+            dialogue,
+            prompt,
+            lambda run, found, proxy: run.dialogues.choose(
+                found, prompt, way, helper, proxy, author
+            ),
+        )
+
+    async def _answered(self, dialogue: UUID, prompt: UUID, take: Take) -> ev.Answered:
         found = await self._put_to_people(dialogue)
         try:
             run = await self._running(found.opened.run)
             proxy = run.proxies[found.opened.robot]
-            answered = await run.request(
-                lambda: run.dialogues.answer(found, prompt, answer, helper, proxy, author)
-            )
+            answered = await run.request(lambda: take(run, found, proxy))
         except ConflictError:
             # Who was first is told also where that answer has ended the run.
             if prompt in found.answers:

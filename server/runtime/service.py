@@ -57,6 +57,20 @@ class DialogueService(Protocol):
         """Answer a prompt: the first answer wins. Raises `LostRaceError`, `ConflictError`."""
         ...
 
+    async def choose(
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        way: str,
+        helper: str,
+        author: Author | None = None,
+    ) -> Answered:
+        """Answer a prompt and what follows from it by a way of help; the last answer.
+
+        Raises as `answer` does.
+        """
+        ...
+
     async def extend(
         self, dialogue: UUID, prompt: UUID, helper: str, author: Author | None = None
     ) -> DeadlineExtended:

@@ -9,7 +9,13 @@ from pydantic import BaseModel, ConfigDict
 
 from mend.dialogue.script import Help
 from mend.robots.link.messages import Detection
-from mend.server.journal.events import AnswerOption, ClipPicture, MissingPart, UnseenPart
+from mend.server.journal.events import (
+    AnswerOption,
+    ClipPicture,
+    MissingPart,
+    UnseenPart,
+    WayOption,
+)
 from mend.server.runtime.leaf_words import LeafDeed
 
 
@@ -63,6 +69,8 @@ class PromptView(View):
     within_s: float | None = None
     """How long the question was to wait when it was put; an extension adds as much again."""
     extensions_left: int = 0
+    headline: str = ""
+    ways: list[WayOption] = []
 
 
 class AwaitedHelp(View):

@@ -342,6 +342,18 @@ class FakeRuns:
         assert isinstance(answered, ev.Answered)
         return answered
 
+    async def choose(
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        way: str,
+        helper: str,
+        author: ev.Author | None = None,
+    ) -> ev.Answered:
+        if way != "help":
+            raise ConflictError(f"'{way}' is no way to answer this question: there are help")
+        return await self.answer(dialogue, prompt, "yes", helper, author)
+
     async def extend(
         self, dialogue: UUID, prompt: UUID, helper: str, author: ev.Author | None = None
     ) -> ev.DeadlineExtended:

@@ -112,15 +112,46 @@ class PlayedDialogues(FakeRuns):
         helper: str,
         author: ev.Author | None = None,
     ) -> ev.Answered:
+        asked = self._asked(dialogue, prompt)
+        return await self._take(dialogue, asked, answer, helper, author)
+
+    async def choose(
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        way: str,
+        helper: str,
+        author: ev.Author | None = None,
+    ) -> ev.Answered:
+        asked = self._asked(dialogue, prompt)
+        chosen = next((each for each in asked.ways if each.way == way), None)
+        if chosen is None:
+            raise ConflictError(f"'{way}' is no way to answer this question")
+        for answer in chosen.answers:
+            answered = await self._take(dialogue, asked, answer, helper, author)
+            asked = self._played[dialogue].asked or asked
+        return answered
+
+    def _asked(self, dialogue: UUID, prompt: UUID) -> ev.Prompt:
         self.dialogue_now(dialogue)
-        played = self._played[dialogue]
         if prompt in self._won:
             raise LostRaceError(prompt, self._won[prompt])
-        if played.asked is None or played.asked.prompt != prompt:
+        asked = self._played[dialogue].asked
+        if asked is None or asked.prompt != prompt:
             raise ConflictError("this prompt does not wait for an answer")
-        self._won[prompt] = helper
-        played.helper = helper
-        answered = played.make.answered(played.asked, answer, helper, author)
+        return asked
+
+    async def _take(
+        self,
+        dialogue: UUID,
+        asked: ev.Prompt,
+        answer: Literal["yes", "no"],
+        helper: str,
+        author: ev.Author | None,
+    ) -> ev.Answered:
+        played = self._played[dialogue]
+        self._won[asked.prompt] = played.helper = helper
+        answered = played.make.answered(asked, answer, helper, author)
         committed = await self._go_on(dialogue, answer, [answered])
         assert isinstance(committed[0], ev.Answered)
         return committed[0]
