@@ -342,6 +342,12 @@ class FakeRuns:
         assert isinstance(answered, ev.Answered)
         return answered
 
+    def offer_ways(self, dialogue: UUID, ways: list[ev.WayOption]) -> None:
+        """From now on the open question has these ways of help."""
+        prompt = self.dialogue_now(dialogue).prompt
+        assert prompt is not None, "nothing is asked"
+        self._change(dialogue, prompt=prompt.model_copy(update={"ways": ways}))
+
     async def choose(
         self,
         dialogue: UUID,

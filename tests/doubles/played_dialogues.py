@@ -67,8 +67,11 @@ class PlayedDialogues(FakeRuns):
         self.to: str | None = None
         """Whom questions are put to, from now on."""
 
-    async def open(self, run: UUID, kind: str, part: str = "yellow_bar") -> UUID:
-        """A robot detects a fault of `kind`, with a picture and a clip; the dialogue's id."""
+    async def open(self, run: UUID, kind: str, part: str = "yellow_bar", **otherwise: Any) -> UUID:
+        """A robot detects a fault of `kind`, with a picture and a clip; the dialogue's id.
+
+        `otherwise`: what the event has of the issue other than the usual.
+        """
         pictures = [uuid4() for _ in range(4)]
         raised = ev.IssueRaised(
             **_stamp(run),
@@ -83,7 +86,7 @@ class PlayedDialogues(FakeRuns):
             interrupts=True,
             detection=DETECTION,
             picture=pictures[-1],
-        )
+        ).model_copy(update=otherwise)
         dialogue = uuid4()
         played = Played(raised, DialogueEvents(lambda: _stamp(run), dialogue, raised))
         self._played[dialogue] = played
@@ -202,6 +205,13 @@ class PlayedDialogues(FakeRuns):
         assert isinstance(committed[0], ev.PromiseTakenBack)
         return committed[0]
 
+    async def came_of(self, dialogue: UUID) -> list[ev.Event]:
+        """All that was journaled since a dialogue was opened."""
+        events = await self._journal.read(0, 100_000, self._played[dialogue].raised.run)
+        opened = (each for each in events if isinstance(each, ev.DialogueOpened))
+        first = next(each.seq for each in opened if each.dialogue == dialogue)
+        return [each for each in events if each.seq >= first]
+
     async def picture(self, run: UUID, camera: str, robot: str | None = None) -> CameraPicture:
         await super().picture(run, camera, robot)
         return CameraPicture(_jpeg(2))
@@ -244,7 +254,9 @@ class PlayedDialogues(FakeRuns):
     ) -> Sequence[ev.Event]:
         played = self._played[dialogue]
         played.calls.append(call)
-        turns = rehearse(self._scripts[played.raised.issue], played.raised, played.calls, Outlook())
+        raised = played.raised
+        outlook = raised.outlook or Outlook()
+        turns = rehearse(self._scripts[raised.issue], raised, played.calls, outlook)
         events = played.make.of_turns(
             turns,
             ask_deadline=self._deadline(),

@@ -164,11 +164,16 @@ export const answer = (id: string, prompt: string, value: "yes" | "no", helper: 
   call<Answered>("POST", `/api/dialogues/${segment(id)}/answers`, { prompt, answer: value, helper });
 
 /** Answer from a page that is being left: nobody is there any more to hear the result. */
-export function answerWhileLeaving(id: string, prompt: string, value: "yes" | "no", helper: string): void {
-  void fetch(`/api/dialogues/${segment(id)}/answers`, {
+export function answerWhileLeaving(
+  id: string,
+  prompt: string,
+  reply: { answer: "yes" | "no" } | { way: string },
+  helper: string,
+): void {
+  void fetch(`/api/dialogues/${segment(id)}/${"way" in reply ? "choices" : "answers"}`, {
     method: "POST",
     headers: { "Content-Type": JSON_TYPE },
-    body: JSON.stringify({ prompt, answer: value, helper }),
+    body: JSON.stringify({ prompt, ...reply, helper }),
     keepalive: true,
   });
 }
