@@ -14,6 +14,7 @@ from mend.server.dialogues.escalation import (
     Exhausted,
     Mail,
     Repeat,
+    Standing,
     ToHelper,
     first_helper,
     next_rung,
@@ -43,7 +44,10 @@ SendMail = Callable[[ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None
 
 
 class DialogueDriver:
-    """Drives the dialogues of one run. `person` is None where nobody is simulated."""
+    """Drives the dialogues of one run. `person` is None where nobody is simulated.
+
+    `idle`: who is signed in to help and on nothing.
+    """
 
     def __init__(
         self,
@@ -52,8 +56,10 @@ class DialogueDriver:
         policy: EscalationPolicy,
         person: Person | None,
         send_mail: SendMail,
+        idle: Callable[[], Sequence[str]] = tuple,
     ) -> None:
         self._context = context
+        self._idle = idle
         self._answers = answers
         self._policy = policy
         self._promises = Promises(context, person)
@@ -284,7 +290,7 @@ class DialogueDriver:
             await self._converse(dialogue, "silence", [], proxy)
             return
         make = self._make(dialogue)
-        rung = next_rung(self._policy, ask.version)
+        rung = next_rung(self._policy, _standing(dialogue), self._idle())
         if isinstance(rung, Exhausted):
             await self._converse(dialogue, "silence", [], proxy)
             return
@@ -312,12 +318,14 @@ class DialogueDriver:
         worded = next(each for each in turns if isinstance(each, Ask))
         deadline = self._context.clock.now() + rung.answer_within_s
         to = ask.to if isinstance(rung, Mail) else rung.helper
-        effect = f"{self._if_silent(ask.version + 1)}{worded.timeout_effect}"
+        mailed = dialogue.mailed or isinstance(rung, Mail)
+        standing = Standing((*dialogue.asked_of, to), mailed)
+        effect = f"{self._if_silent(standing)}{worded.timeout_effect}"
         return self._make(dialogue).repeat(ask, worded, deadline, to, effect)
 
-    def _if_silent(self, version: int) -> str:
+    def _if_silent(self, standing: Standing) -> str:
         """What is done before silence counts as an answer, as the beginning of a sentence."""
-        match next_rung(self._policy, version):
+        match next_rung(self._policy, standing, self._idle()):
             case Repeat():
                 done = "I ask again"
             case ToHelper(helper=helper):
@@ -385,11 +393,12 @@ class DialogueDriver:
     ) -> list[ev.Event]:
         """The events of turns; only where the robot `waits` for an answer is it asked for again."""
         now, settings = self._context.clock.now(), self._context.settings
+        to = first_helper(self._policy, self._idle(), waits=waits)
         return make.of_turns(
             turns,
             ask_deadline=now + self._policy.answer_within_s,
-            if_silent=self._if_silent(1) if waits else "",
-            to=first_helper(self._policy),
+            if_silent=self._if_silent(Standing((to,))) if waits else "",
+            to=to,
             help_until=now + settings.help_window_s,
             helper=helper,
             stopped=stopped,
@@ -424,6 +433,10 @@ class DialogueDriver:
             return None
         speed = self._context.state.started.speed
         return 1.0 if speed == "max" else min(1.0, speed)
+
+
+def _standing(dialogue: DialogueState) -> Standing:
+    return Standing(tuple(dialogue.asked_of), dialogue.mailed)
 
 
 def _open_ask(dialogue: DialogueState, prompt: UUID) -> ev.Prompt:
