@@ -46,8 +46,10 @@ from mend.server.journal.events import (
 from mend.server.journal.trouble import Sleep
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import (
+    ChosenView,
     DialogueView,
     LeafSaid,
+    QuestionBatchView,
     RobotView,
     RunSummary,
     RunView,
@@ -272,6 +274,15 @@ class MendClient:
         self, status: Literal["open", "closed"] | None = None
     ) -> list[DialogueView]:
         return await self._get("/api/dialogues", list[DialogueView], status=status)
+
+    async def questions(self) -> list[QuestionBatchView]:
+        """The open questions, the most urgent first; those that may be answered alike together."""
+        return await self._get("/api/questions", list[QuestionBatchView])
+
+    async def choose_for_all(self, way: str, prompts: list[UUID], helper: str) -> list[ChosenView]:
+        """Choose one of a batch's `at_once` for its questions; what became of each."""
+        body = {"way": way, "prompts": [str(each) for each in prompts], "helper": helper}
+        return await self._post("/api/questions/choices", list[ChosenView], body)
 
     async def dialogue(self, dialogue: UUID) -> DialogueView:
         return await self._get(f"/api/dialogues/{dialogue}", DialogueView)

@@ -90,6 +90,8 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     Endpoint("list_issues", "GET", "/api/issues", Role.VIEWER),
     Endpoint("list_dialogues", "GET", "/api/dialogues", Role.VIEWER),
     Endpoint("get_dialogue", "GET", _DIALOGUE, Role.VIEWER),
+    Endpoint("list_questions", "GET", "/api/questions", Role.VIEWER),
+    Endpoint("choose_for_all", "POST", "/api/questions/choices", Role.HELPER),
     Endpoint("answer_prompt", "POST", _DIALOGUE + "/answers", Role.HELPER),
     Endpoint("choose_way", "POST", _DIALOGUE + "/choices", Role.HELPER),
     Endpoint("claim_dialogue", "POST", _DIALOGUE + "/claim", Role.HELPER),

@@ -98,10 +98,14 @@ class Runtime:
         self._writing_json = asyncio.Lock()
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
         self._owners = RobotOwners(robots)
-        self.dialogues = RunDialogues(self._states, self._running)
+        self.dialogues = RunDialogues(self._states, self._running, self._now_of)
         self._closing = False
         self._new_runs = NewRuns(preparation, worlds, utc_now, settings.limits)
         journal.trouble.watch(self._journal_troubled)
+
+    def _now_of(self, state: RunState) -> float:
+        run = self._runs.get(state.id)
+        return state.time if run is None else run.context.clock.now()
 
     # --- Beginning and ending -----------------------------------------------------------------
 

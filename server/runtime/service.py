@@ -1,6 +1,6 @@
 """The runtime as the API, the sockets and the command line see it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Literal, Protocol
 from uuid import UUID
 
@@ -15,8 +15,10 @@ from mend.server.journal.events import (
 from mend.server.journal.run_index import RunPage
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import (
+    ChosenView,
     DialogueView,
     LeafSaid,
+    QuestionBatchView,
     RobotView,
     RunStatus,
     RunSummary,
@@ -36,6 +38,16 @@ class DialogueService(Protocol):
         self, status: Literal["open", "closed"] | None, limit: int, offset: int
     ) -> list[DialogueView]:
         """A page of dialogues, oldest first."""
+        ...
+
+    def questions(self) -> list[QuestionBatchView]:
+        """The open questions of all runs, the most urgent first; those alike stand together."""
+        ...
+
+    async def choose_for_all(
+        self, way: str, prompts: Sequence[UUID], helper: str, author: Author | None = None
+    ) -> list[ChosenView]:
+        """Choose a way for several open questions. Raises `NotFoundError`, `ConflictError`."""
         ...
 
     def count_open(self) -> int:

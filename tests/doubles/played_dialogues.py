@@ -91,6 +91,8 @@ class PlayedDialogues(FakeRuns):
         played = Played(raised, DialogueEvents(lambda: _stamp(run), dialogue, raised))
         self._played[dialogue] = played
         self._dialogues[dialogue] = _view(dialogue, raised)
+        if raised.place is not None:
+            self.places[dialogue] = raised.place
         clip = ev.ClipRecorded(
             **_stamp(run),
             **raised.model_dump(include={"node", "name", "robot", "issue", "execution"}),

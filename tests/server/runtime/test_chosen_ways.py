@@ -142,3 +142,36 @@ async def test_a_question_that_there_is_not_is_not_found(service: PretendService
     view, _ = await asked(service)
     with pytest.raises(NotFoundError, match="there is no prompt"):
         await service.runtime.dialogues.choose(view.dialogue, uuid4(), "place", "ann")
+
+
+async def test_an_open_question_stands_in_the_queue_until_it_is_answered(
+    service: PretendService,
+) -> None:
+    view, prompt = await asked(service)
+    [batch] = service.runtime.dialogues.questions()
+    [waiting] = batch.questions
+    assert (waiting.dialogue, waiting.prompt) == (view.dialogue, prompt.prompt)
+    assert (waiting.attempt, waiting.attempts, waiting.claimed_by) == (1, 3, "ann")
+    assert waiting.place == "spot_1"
+    assert batch.at_once == []
+    chosen = await service.runtime.dialogues.choose_for_all("place", [prompt.prompt], "ann")
+    assert [(each.prompt, each.refused) for each in chosen] == [(prompt.prompt, None)]
+    assert service.runtime.dialogues.questions() == []
+    with pytest.raises(NotFoundError, match="no open question"):
+        await service.runtime.dialogues.choose_for_all("place", [prompt.prompt], "ann")
+
+
+async def test_several_questions_take_only_what_is_safe_for_all(service: PretendService) -> None:
+    _, first = await asked(service)
+    await service.runtime.start_run(RunRequest(tree="tree", world="tabletop", speed="max"))
+    async with asyncio.timeout(60):
+        while len(service.runtime.dialogues.questions()[0].questions) < 2:  # noqa: ASYNC110
+            await asyncio.sleep(0)
+    [batch] = service.runtime.dialogues.questions()
+    prompts = [each.prompt for each in batch.questions]
+    assert first.prompt in prompts
+    assert [each.way for each in batch.at_once] == ["later"]
+    with pytest.raises(ConflictError, match="'put_back' cannot be chosen for these 2 questions"):
+        await service.runtime.dialogues.choose_for_all("put_back", prompts, "ann")
+    chosen = await service.runtime.dialogues.choose_for_all("later", prompts, "ann")
+    assert [each.refused for each in chosen] == [None, None]
