@@ -9,6 +9,7 @@ script = offer_script(
         question="I cannot see what is on the table.{why} Can you clear the view of my head "
         "camera, or mend it?",
         failed="I have now found {times} that I cannot see what is on the table.{why}",
+        deed="clear my head camera's view",
         yes_effect="You clear the view of my head camera, or mend it; I go on as soon as I see "
         "what is on the table ({attempt}).",
         help=Help.CLEAR_VIEW,

@@ -15,6 +15,7 @@ from mend.tasks.resolution import Resolution
 SEEN = Offer(
     question="I cannot go on{with_object}.{why} Can you clear the way?",
     failed="I have now been stopped {times} on my way{with_object}.",
+    deed="clear the way",
     yes_effect="You clear the way; I go on as soon as I see it free ({attempt}).",
     help=Help.CLEAR_WAY,
     request="Please clear the way. I wait until I see it free.",
@@ -29,6 +30,7 @@ SEEN = Offer(
 FELT = Offer(
     question="I felt something hold up my arm and stopped. Can you clear its way?",
     failed="I have now been held up {times}{with_object}.",
+    deed="clear my arm's way",
     yes_effect="You clear the way of my arm. I give you time for that, then I look, and go on if I "
     "see and feel nothing in it ({attempt}).",
     help=Help.CLEAR_WAY,

@@ -1,13 +1,13 @@
 """One conversation: walks a script's table for one issue, as the journal replays it."""
 
-from typing import Literal
-
 from mend.dialogue.calls import CALLS, ConversationPhase, DialogueCall
 from mend.dialogue.evidence import Change, PutRight
 from mend.dialogue.outlook import Outlook
+from mend.dialogue.reading import ROBOT_GOES_ON, ScriptReading
 from mend.dialogue.script import (
     ATTEMPT_FAILED,
     EXPECTED,
+    Answer,
     Ask,
     AskState,
     AwaitHelp,
@@ -22,17 +22,15 @@ from mend.dialogue.script import (
     Remark,
     Script,
     Sight,
-    State,
     ToldState,
     Turn,
+    Way,
 )
 from mend.dialogue.telling import SEEN_NOW, asked_about, not_yet, nothing_could_be_seen
-from mend.dialogue.wording import sentence, word
+from mend.dialogue.ways import ways_of, ways_of_repeated
+from mend.dialogue.wording import sentence
 from mend.tasks.issue import Issue
 from mend.tasks.resolution import Resolution
-
-_ROBOT_GOES_ON = (Resolution.ROBOT_FINISH, Resolution.COLLAB_FINISH)
-"""Once it sees the help, or to take it, the robot moves."""
 
 MOST_LOOKS = 10
 """So often the robot looks at a helper's word that one promise is kept."""
@@ -64,8 +62,11 @@ class Conversation:
         self._issue = issue
         self._outlook = outlook
         self._said_with = said_with or outlook
+        self._reading = ScriptReading(self._script, issue, outlook, self._said_with)
         self._phase = ConversationPhase.NEW
         self._at: AskState | HelpState | ToldState | None = None
+        self._name = ""
+        self._asked: Ask | None = None
         self._reasks_left = 0
         self._looks_left = 0
 
@@ -106,7 +107,14 @@ class Conversation:
         failed = self._script.failed_opening if self._outlook.own_failure else None
         return self._enter(failed or self._script.opening, heard=False)
 
-    def answer(self, answer: Literal["yes", "no"]) -> list[Turn]:
+    @property
+    def ways(self) -> tuple[Way, ...]:
+        """Every way to answer the open question and what follows its no; empty unless asking."""
+        if self._phase is not ConversationPhase.ASKING or self._asked is None:
+            return ()
+        return self._asked.ways
+
+    def answer(self, answer: Answer) -> list[Turn]:
         """Take a helper's answer to the open question."""
         CALLS.require(self._phase, DialogueCall.ANSWER)
         match self._at, answer:
@@ -164,17 +172,7 @@ class Conversation:
             return self._give_up(self._word(state.given_up))
         self._reasks_left -= 1
         self._phase = ConversationPhase.ASKING
-        keeps = f"{_KEEPS} for it ({{attempt}})"
-        return [
-            Ask(
-                text=self._word(asked_about(state, felt)),
-                yes_effect=self._word(f"{keeps}." if self._reasks_left else keeps + _OR_FAILS),
-                no_effect=self._effect(state.otherwise, state.otherwise_effect),
-                timeout_effect=self._word(ATTEMPT_FAILED),
-                yes_final=self._is_final(state),
-                no_final=self._is_final(self._following(state.otherwise)),
-            )
-        ]
+        return [self._ask_about(state, felt)]
 
     def said_done(self) -> list[Turn]:
         """A helper says that what was promised is done: nothing is said before a look was made.
@@ -236,7 +234,8 @@ class Conversation:
     # --- Going from state to state ------------------------------------------------------------
 
     def _enter(self, name: str, *, heard: bool) -> list[Turn]:
-        state = self._following(name)
+        self._name = self._reading.following(name)
+        state = self._script.states[self._name]
         match state:
             case AskState():
                 self._at, self._phase = state, ConversationPhase.ASKING
@@ -254,7 +253,7 @@ class Conversation:
                 close = self._close(CloseReason.RESOLVED, Resolution.ROBOT_RETRY, failed=True)
                 return [Remark(said), close]
             case CloseState(resolution=resolution):
-                helped = heard and resolution in _ROBOT_GOES_ON
+                helped = heard and resolution in ROBOT_GOES_ON
                 close = self._close(CloseReason.RESOLVED, resolution, helped=helped)
                 return [Remark(self._word(state.text)), close]
 
@@ -263,32 +262,35 @@ class Conversation:
         return AwaitHelp(state.help)
 
     def _ask(self, state: AskState) -> Ask:
-        return Ask(
+        reading, choice = self._reading, ways_of(self._reading, state)
+        self._asked = Ask(
             text=self._word(state.text),
-            yes_effect=self._effect(state.yes, state.yes_effect),
-            no_effect=self._effect(state.no, state.no_effect),
+            yes_effect=reading.effect(state.yes, state.yes_effect),
+            no_effect=reading.effect(state.no, state.no_effect),
             timeout_effect=self._word(state.unanswered_effect),
-            yes_final=self._is_final(self._following(state.yes)),
-            no_final=self._is_final(self._following(state.no)),
+            yes_final=reading.is_final(state.yes),
+            no_final=reading.is_final(state.no),
+            ways=choice.ways,
+            headline=choice.headline,
         )
+        return self._asked
 
-    def _following(self, name: str) -> State:
-        """A state, or what follows it where its question is not put."""
-        state = self._script.states[name]
-        if isinstance(state, AskState) and self._passes_over(state):
-            return self._following(state.no)
-        return state
-
-    def _effect(self, following: str, effect: str) -> str:
-        """What an answer will do; where it leads past a question, what that one's no does."""
-        state = self._script.states[following]
-        if isinstance(state, AskState) and self._passes_over(state):
-            return self._effect(state.no, state.no_effect)
-        return self._word(effect)
-
-    def _passes_over(self, state: AskState) -> bool:
-        refused_first = state.if_refused and not self._outlook.may_be_left
-        return refused_first or state.guess > len(self._issue.guesses)
+    def _ask_about(self, state: HelpState, felt: Felt | None) -> Ask:
+        """Whether promised help that is not seen still comes."""
+        reading, keeps = self._reading, f"{_KEEPS} for it ({{attempt}})"
+        effect = self._word(f"{keeps}." if self._reasks_left else keeps + _OR_FAILS)
+        choice = ways_of_repeated(reading, self._name, state, effect, felt)
+        self._asked = Ask(
+            text=self._word(asked_about(state, felt)),
+            yes_effect=effect,
+            no_effect=reading.effect(state.otherwise, state.otherwise_effect),
+            timeout_effect=self._word(ATTEMPT_FAILED),
+            yes_final=reading.is_final(self._name),
+            no_final=reading.is_final(state.otherwise),
+            ways=choice.ways,
+            headline=choice.headline,
+        )
+        return self._asked
 
     def _settle(
         self, reason: CloseReason, wanted: Resolution, said: str, change: Change
@@ -346,18 +348,4 @@ class Conversation:
         return self._at
 
     def _word(self, text: str) -> str:
-        worded = word(text, self._issue, self._said_with)
-        return f"{worded[:1].upper()}{worded[1:]}"
-
-    @staticmethod
-    def _is_final(following: State) -> bool:
-        """Whether what an answer leads to closes the dialogue or sets the robot in motion."""
-        match following:
-            case AskState():
-                return False
-            case ToldState():
-                return False
-            case HelpState(resolution=resolution):
-                return resolution in _ROBOT_GOES_ON
-            case CloseState() | LeaveState():
-                return True
+        return self._reading.word(text)

@@ -8,6 +8,7 @@ script = offer_script(
     Offer(
         question="I cannot go on.{why} Can you open the door?",
         failed="I have now been stopped {times} by a shut door.",
+        deed="open the door",
         yes_effect="You open the door; I go on as soon as I see it open ({attempt}).",
         help=Help.CLEAR_WAY,
         request="Please open the door. I wait until I see it open.",

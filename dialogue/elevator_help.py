@@ -8,6 +8,7 @@ script = offer_script(
     Offer(
         question="I need help with an elevator.{why} Can you call it and press my button in it?",
         failed="I have now got no farther {times} for want of an elevator.",
+        deed="call the elevator and press my button",
         yes_effect="You call the elevator and press the button; I go on once it is open "
         "({attempt}).",
         help=Help.CLEAR_WAY,
@@ -15,7 +16,7 @@ script = offer_script(
         resolution=Resolution.ROBOT_FINISH,
         thanks="Thank you. I see the elevator open.",
         unchanged="I see the elevator open for me.",
-        not_seen="I do not see the elevator open where I need it yet. Is it on its way?",
+        not_seen="I do not see the elevator open where I need it yet. Are you still seeing to it?",
         put_right={
             Expectation.WAY_CLEAR: Resolution.ROBOT_FINISH,
             Expectation.LED_ROUND: Resolution.ROBOT_FINISH,

@@ -8,6 +8,7 @@ script = offer_script(
     Offer(
         question="{person} does not come after me to {place}.{why} Will you tell {person} to come?",
         failed="{person} has now fallen behind {times}.",
+        deed="tell {person} to come",
         yes_effect="You tell {person} to come; I go on once I see {person} beside me ({attempt}).",
         help=Help.SEND_PERSON,
         request="Please tell {person} to come. I wait here until I see {person} beside me.",

@@ -1,5 +1,6 @@
 """The script for `item_missing`: who was given nothing hands nothing over."""
 
+from mend.dialogue.place_branch import LEAVES, leave_headline
 from mend.dialogue.script import ATTEMPT_FAILED, AskState, CloseState, LeaveState, Script
 from mend.tasks.resolution import Resolution
 
@@ -13,8 +14,9 @@ script = Script(
             yes_effect="I hand nothing over, and the task counts the {item} as left out by you.",
             no="later",
             no_effect=ATTEMPT_FAILED,
+            headline=leave_headline(),
         ),
-        "left_out": LeaveState(text="All right. I hand nothing over."),
+        "left_out": LeaveState(text="All right. I hand nothing over.", deed=LEAVES),
         "later": CloseState(text="All right.", resolution=Resolution.ROBOT_RETRY),
     },
 )

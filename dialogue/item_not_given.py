@@ -8,6 +8,7 @@ script = offer_script(
     Offer(
         question="Please {put_in}.{why} Will you do that?",
         failed="I have now waited {times} to be given the {item}.",
+        deed="{fetch}",
         yes_effect="You {put_in}; I go on once I feel something new in my basket ({attempt}).",
         help=Help.PUT_IN,
         request="Please {put_in}. I wait until I feel something new in my basket.",
@@ -22,6 +23,10 @@ script = offer_script(
             "not the {item}?",
             Felt.LIGHTER: "My basket is lighter than it was, not heavier. Will you put back what "
             "was taken out, and the {item} in?",
+        },
+        deeds_felt={
+            Felt.TOO_MUCH: "take out what is not the {item}",
+            Felt.LIGHTER: "put {it} in, and what was taken out",
         },
         given_up="I still do not feel in my basket what I came for.",
         put_right={Expectation.LOADED: Resolution.ROBOT_FINISH},

@@ -8,6 +8,7 @@ script = offer_script(
     Offer(
         question="Please take the {item} out of my basket.{why} Will you do that?",
         failed="I have now waited {times} for the {item} to be taken out of my basket.",
+        deed="take {it} out of my basket",
         yes_effect="You take the {item} out of my basket; I go on once I feel that my basket is "
         "lighter by it ({attempt}).",
         help=Help.TAKE_OUT,
@@ -21,6 +22,10 @@ script = offer_script(
             "out, and what was put in?",
             Felt.ANOTHER: "My basket is lighter, but not by as much as when I was given the "
             "{item}. Will you put back what is not the {item}, and take that out?",
+        },
+        deeds_felt={
+            Felt.HEAVIER: "take {it} out, and what was put in",
+            Felt.ANOTHER: "take out only the {item}",
         },
         given_up="I still do not feel the {item} taken out of my basket.",
         put_right={Expectation.UNLOADED: Resolution.ROBOT_FINISH},

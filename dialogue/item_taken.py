@@ -10,6 +10,7 @@ script = offer_script(
     Offer(
         question="Something was taken out of my basket.{why} Can you put it back?",
         failed="I have now met a basket that was lighter than before {times}.",
+        deed="put back what was in my basket",
         yes_effect="You put it back into my basket; I go on once I feel that it weighs what it "
         "did ({attempt}).",
         help=Help.PUT_IN,

@@ -24,6 +24,7 @@ def _question(number: int) -> AskState:
         no=_after(number),
         no_effect="I ask about another place, or else whether I shall leave the {name} out.",
         guess=number,
+        headline="say where I am",
     )
 
 
@@ -34,6 +35,7 @@ def _told(number: int) -> ToldState:
         thanks=f"Thank you. What I see agrees: I am {{guess_{number}}}.",
         doubted=f"What I see does not agree with my being {{guess_{number}}}.",
         otherwise=_after(number),
+        deed=f"{{guess_{number}}}",
     )
 
 
@@ -51,8 +53,9 @@ _STATES: dict[str, State] = {
         yes_effect="I leave the {name} out, and the task counts it as left out by you.",
         no="later",
         no_effect=ATTEMPT_FAILED,
+        headline="say whether I leave the {name} out",
     ),
-    "left_out": LeaveState(text="All right. I leave the {name} out."),
+    "left_out": LeaveState(text="All right. I leave the {name} out.", deed="leave the {name} out"),
     "later": CloseState(text="All right.", resolution=Resolution.ROBOT_RETRY),
 }
 

@@ -9,13 +9,16 @@ from mend.tasks.resolution import Resolution
 def lost_part_script(what_happened: str, failed: str) -> ScriptWithParameters[Patience]:
     """The script for an object that the robot has not got.
 
+    The paper's robot asks "Shall I try again?", and whoever says yes is then told to put it back.
+    Here that is what is asked for.
     `what_happened` is its first sentence, `failed` the one once it has happened too often.
     Source: Blankenburg et al. 2020, Section 3.3.
     """
     return offer_script(
         Offer(
-            question=f"{what_happened}{{why}} Shall I try again?",
+            question=f"{what_happened}{{why}} Will you put it back on the table?",
             failed=f"{failed}{{why}}",
+            deed="put {it} back on the table",
             yes_effect="You put the {object} back on the table, and {again}.",
             help=Help.PUT_BACK,
             request="Please put the {object} back where it was on the table.",

@@ -8,6 +8,7 @@ script = offer_script(
     Offer(
         question="I cannot go on as I am.{why} Can you plug me in where I stand?",
         failed="I have now stood {times} with an empty battery.",
+        deed="plug me in where I stand",
         yes_effect="You plug me in; I go on once my battery holds enough ({attempt}).",
         help=Help.CHARGE,
         request="Please plug me in where I stand. I wait until I feel current.",

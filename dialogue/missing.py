@@ -13,6 +13,7 @@ script = offer_script(
     Offer(
         question="I cannot find the {object}. Can you put it on the table where I see it?",
         failed="I have now looked {times} for the {object} and cannot find it.",
+        deed="put {it} on the table",
         yes_effect="You put the {object} on the table; I pick it up and place it ({attempt}).",
         help=Help.PUT_BACK,
         request="Please put the {object} on the table where I can reach it.",

@@ -12,10 +12,12 @@ script = Script(
             yes_effect="I take your word that the message was heard, and {go_on}.",
             no="leave",
             no_effect="I ask whether I shall leave the message untold ({attempt}).",
+            headline="say whether the message was heard",
         ),
         "heard": CloseState(
             text="Thank you. I take your word that the message was heard.",
             resolution=Resolution.ROBOT_FINISH,
+            deed="it was heard",
         ),
         "leave": AskState(
             text="Shall I leave the message for {place} untold?",
@@ -24,8 +26,11 @@ script = Script(
             no="later",
             no_effect=ATTEMPT_FAILED,
             if_refused=True,
+            headline="say whether the message stays untold",
         ),
-        "left_out": LeaveState(text="All right. The message was not heard, and I go on."),
+        "left_out": LeaveState(
+            text="All right. The message was not heard, and I go on.", deed="leave it untold"
+        ),
         "later": CloseState(text="All right.", resolution=Resolution.ROBOT_RETRY),
     },
 )

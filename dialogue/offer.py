@@ -27,6 +27,8 @@ FAILED = "failed"
 class Offer:
     """What a script asks for (`question`), what a yes means, and how the help is seen through.
 
+    `deed` is that help in few words, and `deeds_felt` what is asked for about what is felt instead.
+
     `failed` says how often the robot has failed at this itself; it then no longer asks for `help`.
     `request` says what to do and `not_seen` asks for it again, or `not_felt` where a basket feels
     something else, until it is `given_up`; once `help` is seen the robot says
@@ -39,6 +41,7 @@ class Offer:
 
     question: str
     failed: str
+    deed: str
     yes_effect: str
     help: Help
     request: str
@@ -52,6 +55,7 @@ class Offer:
     placeable: bool = True
     leaves: str = place_branch.LEAVES
     not_felt: Mapping[Felt, str] = field(default_factory=dict)
+    deeds_felt: Mapping[Felt, str] = field(default_factory=dict)
     given_up: str = "I still do not see that help."
     without_object: str = ""
 
@@ -95,12 +99,12 @@ def _script(offer: Offer, patience: Patience, variants: Mapping[Sensed, Script])
         states={
             "question": AskState(
                 text=offer.question,
-                yes="request",
+                yes=str(offer.help),
                 yes_effect=offer.yes_effect,
                 no=refused,
                 no_effect=refused_effect,
             ),
-            "request": HelpState(
+            str(offer.help): HelpState(
                 text=offer.request,
                 help=offer.help,
                 resolution=offer.resolution,
@@ -111,6 +115,8 @@ def _script(offer: Offer, patience: Patience, variants: Mapping[Sensed, Script])
                 otherwise_effect=refused_effect,
                 not_felt=offer.not_felt,
                 given_up=offer.given_up,
+                deed=offer.deed,
+                deeds_felt=offer.deeds_felt,
             ),
             FAILED: last,
             **branch,

@@ -8,6 +8,7 @@ script = offer_script(
     Offer(
         question="I have come to {place} for {person}.{why} Will you tell {person} to come to me?",
         failed="I have now come {times} for {person}, who was not there.",
+        deed="tell {person} to come",
         yes_effect="You tell {person} to come; I go on once I see {person} beside me ({attempt}).",
         help=Help.SEND_PERSON,
         request="Please tell {person} to come to me. I wait until I see {person} beside me.",

@@ -25,8 +25,13 @@ OPENING = "will_you_place"
 OPENING_EFFECT = "I ask whether you will place the {object} yourself ({attempt})."
 
 YES_EFFECT = "You put the {object} at its place; it is done once I see it there ({attempt})."
-LEAVES = "leave the {object} out"
+LEAVES = "leave {it} out"
 LEAVE_EFFECT = f"I ask whether I shall {LEAVES} ({{attempt}})."
+
+
+def leave_headline(leaves: str = LEAVES) -> str:
+    """What is asked of whoever can only say whether something is left out."""
+    return f"say whether I {leaves}"
 
 
 def leaving(leaves: str = LEAVES) -> Mapping[str, State]:
@@ -39,8 +44,9 @@ def leaving(leaves: str = LEAVES) -> Mapping[str, State]:
             no="later",
             no_effect=ATTEMPT_FAILED,
             if_refused=True,
+            headline=leave_headline(leaves),
         ),
-        "left_out": LeaveState(text=f"All right. I {leaves}."),
+        "left_out": LeaveState(text=f"All right. I {leaves}.", deed=leaves),
         "later": CloseState(text="All right.", resolution=Resolution.ROBOT_RETRY),
     }
 
@@ -62,6 +68,7 @@ STATES: Mapping[str, State] = {
         not_seen="I do not see the {object} at its place yet. Are you still placing it?",
         otherwise="leave",
         otherwise_effect=LEAVE_EFFECT,
+        deed="place {it} yourself",
     ),
     **leaving(),
 }

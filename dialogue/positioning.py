@@ -22,7 +22,9 @@ script = Script(
             unanswered_effect=ALONE_EFFECT,
         ),
         "together": CloseState(
-            text="All right. I place it slowly.", resolution=Resolution.COLLAB_FINISH
+            text="All right. I place it slowly.",
+            resolution=Resolution.COLLAB_FINISH,
+            deed="help me position {it} now",
         ),
         "alone": CloseState(
             text="I place it slowly by myself.", resolution=Resolution.ROBOT_FINISH

@@ -7,7 +7,7 @@ deadlines or a clock.
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Generic, TypeVar
+from typing import Generic, Literal, TypeVar
 
 from pydantic import BaseModel
 
@@ -85,11 +85,33 @@ class CloseReason(StrEnum):
     """The run ended."""
 
 
+Answer = Literal["yes", "no"]
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """One way to answer a question and those that its answers lead to, all at once.
+
+    `name` is that of the state it leads to, `deed` what the helper then does, and `label` the same
+    below the headline, which may have named the object. `answers` are those that lead there, one
+    after the other; without any yes nobody helps. `effect` and `final` are those of the last.
+    """
+
+    name: str
+    deed: str
+    label: str
+    effect: str
+    answers: tuple[Answer, ...]
+    final: bool = False
+
+
 @dataclass(frozen=True, slots=True)
 class Ask:
     """A yes/no question; the effects say in plain words what each answer, and silence, will do.
 
-    An answer is final when nothing that is asked later can take it back.
+    An answer is final when nothing that is asked later can take it back. `ways` are all that could
+    be answered to it and to what follows a no, the first first, and `headline` what is asked of the
+    helper in few words; both are empty where a script has no `deed` for one of them.
     """
 
     text: str
@@ -98,6 +120,8 @@ class Ask:
     timeout_effect: str
     yes_final: bool = False
     no_final: bool = False
+    ways: tuple[Way, ...] = ()
+    headline: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,6 +211,7 @@ class AskState:
     Silence gives up unless `unanswered` says otherwise. A question that is only put `if_refused`
     before (`Outlook.may_be_left`) is passed over the first time, as if the answer were no, and so
     is one about a `guess` (counted from 1) where the robot has not as many.
+    `headline` is said in place of the deed that a yes leads to, where that is not what is asked.
     Every text of a table may hold the fields of `dialogue.wording`.
     """
 
@@ -199,6 +224,7 @@ class AskState:
     unanswered_effect: str = ATTEMPT_FAILED
     if_refused: bool = False
     guess: int = 0
+    headline: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,7 +236,8 @@ class HelpState:
     While it is not seen, `not_seen` says so and then asks whether it still comes, or `not_felt`
     where the robot feels something else; `otherwise` names the state that follows a no, and
     `otherwise_effect` says what that will do. `given_up` is said once it has been asked about often
-    enough.
+    enough. `deed` says in few words what the helper does (`Put {it} back`), and `deeds_felt` what
+    they do about what the robot feels instead.
     """
 
     text: str
@@ -223,6 +250,8 @@ class HelpState:
     otherwise_effect: str
     not_felt: Mapping[Felt, str] = field(default_factory=dict)
     given_up: str = "I still do not see that help."
+    deed: str = ""
+    deeds_felt: Mapping[Felt, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,7 +259,7 @@ class ToldState:
     """A person has said yes to a `guess`: the robot sees whether that agrees with what it sees.
 
     If so it says `thanks` and closes with `resolution`; else it says `doubted`, and `otherwise`
-    names the state that follows.
+    names the state that follows. `deed` is what a helper says.
     """
 
     guess: int
@@ -238,6 +267,7 @@ class ToldState:
     thanks: str
     doubted: str
     otherwise: str
+    deed: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,18 +276,20 @@ class CloseState:
 
     A `robot_retry` reached this way is a failed attempt, and the last word ends with what comes
     next. `collab_finish`, and `robot_finish` where a word is all that is wanted, count as help only
-    after a yes.
+    after a yes. `deed` is what a helper does who says yes; a no that leads here needs none.
     """
 
     text: str
     resolution: Resolution
+    deed: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class LeaveState:
-    """Says a last word and closes: a helper wants the leaf left out."""
+    """Says a last word and closes: a helper wants the leaf left out, by that `deed`."""
 
     text: str
+    deed: str = ""
 
 
 State = AskState | HelpState | ToldState | CloseState | LeaveState

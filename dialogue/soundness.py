@@ -98,7 +98,7 @@ def _badly_worded(script: Script) -> Iterator[str]:
     for name, state in script.states.items():
         for field, text in _sentences_of(state):
             where = f"'{field}' of state '{name}'"
-            if not text.strip():
+            if not text.strip() and field not in _MAY_BE_EMPTY:
                 yield f"{where} is empty"
             try:
                 unknown = unknown_fields(text)
@@ -116,6 +116,7 @@ def _sentences_of(state: State) -> Iterator[tuple[str, str]]:
         yield field, getattr(state, field)
     if isinstance(state, HelpState):
         yield from ((f"not_felt: {felt}", text) for felt, text in state.not_felt.items())
+        yield from ((f"deeds_felt: {felt}", text) for felt, text in state.deeds_felt.items())
 
 
 def _unverified(script: Script) -> Iterator[str]:
@@ -146,7 +147,9 @@ _NOT_SENTENCES = {
     "resolution",
     "guess",
     "not_felt",
+    "deeds_felt",
 }
+_MAY_BE_EMPTY = {"deed", "headline"}
 _SENTENCES: dict[type, list[str]] = {
     kind: [field.name for field in fields(kind) if field.name not in _NOT_SENTENCES]
     for kind in (AskState, HelpState, ToldState, CloseState, LeaveState)

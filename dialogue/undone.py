@@ -15,8 +15,9 @@ from mend.tasks.issue import Sensed
 from mend.tasks.resolution import Resolution
 
 _SEEN = Offer(
-    question="The {object} is not at its place.{why} Shall I place it again?",
+    question="The {object} is not at its place.{why} Will you put it within my reach?",
     failed="I have now seen {times} that the {object} is not at its place.",
+    deed="put {it} within my reach",
     yes_effect="You put the {object} where I can reach it; I place it again ({attempt}).",
     help=Help.PUT_BACK,
     request="Please put the {object} on the table where I can reach it.",

@@ -8,6 +8,7 @@ script = offer_script(
     Offer(
         question="I cannot reach the {object}.{why} Can you hand it to me?",
         failed="I have now tried {times} and cannot reach the {object}.{why}",
+        deed="hold {it} between my fingers",
         yes_effect="You hold the {object} between my fingers; I take it and place it ({attempt}).",
         help=Help.HAND_OVER,
         request="Please hold the {object} between my fingers until I have gripped it.",

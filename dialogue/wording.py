@@ -11,8 +11,10 @@ _GUESSES = ("guess_1", "guess_2", "guess_3")
 FIELDS = frozenset(
     {
         "object",
+        "it",
         "item",
         "put_in",
+        "fetch",
         "message",
         "person",
         "with_object",
@@ -30,7 +32,8 @@ FIELDS = frozenset(
 )
 """`item`: what is carried for people, `message`: what they are told, and `person`:
 who is escorted. `put_in`: what is to be done so that the robot has the item, which may be in the
-basket of another one (`put the mail into my basket`).
+basket of another one (`put the mail into my basket`), and `fetch` the same in few words. `it`: the
+object, named once and `it` from then on.
 `with_object`: ` with the cup` with a blank before it, or nothing where there is no object.
 `why`: what the robot sensed, as a sentence with a blank before it, or nothing. `attempt`:
 `attempt 1 of 3`. `times`: how often this has happened. `again`, `later`, `go_on`: what the robot
@@ -43,14 +46,20 @@ _ROUNDED_M = 5.0
 """and how far off others stand is said as roundly as people take it."""
 
 
-def word(text: str, issue: Issue, outlook: Outlook) -> str:
-    """Fill in a sentence; a leaf without an object or place is spoken of by its own name."""
+def word(text: str, issue: Issue, outlook: Outlook, *, named: bool = False) -> str:
+    """Fill in a sentence; a leaf without an object or place is spoken of by its own name.
+
+    `named`: the object was named just before.
+    """
+    it = "it" if named else f"the {spoken(issue.object or issue.item or issue.name)}"
     guesses = dict.fromkeys(_GUESSES, "")
     guesses.update(zip(_GUESSES, map(spoken, issue.guesses), strict=False))
     return text.format(
         **guesses,
         item=spoken(issue.item or issue.name),
+        it=it,
         put_in=_put_in(issue),
+        fetch=_fetch(issue, it),
         message=issue.message or "",
         person=issue.person or "somebody",
         object=spoken(issue.object or issue.item or issue.name),
@@ -75,6 +84,12 @@ def _put_in(issue: Issue) -> str:
     if issue.away_m is not None and issue.away_m > _AT_HAND_M:
         there += f", which stands about {_roundly(issue.away_m):.0f} m from here,"
     return f"take {item} out of the basket of {there} and put it into mine"
+
+
+def _fetch(issue: Issue, it: str) -> str:
+    if issue.held_by is None:
+        return f"put {it} into my basket"
+    return f"bring {it} from {called(issue.held_by)}"
 
 
 def _roundly(length_m: float) -> float:

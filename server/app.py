@@ -23,6 +23,7 @@ from mend.server.api import (
     live_socket,
     metrics,
     pictures,
+    questions,
     reference,
     robots,
     run_report,
@@ -47,6 +48,7 @@ from mend.server.api.openapi_responses import document_answers
 from mend.server.api.problems import Problem, answer_errors_with_problems
 from mend.server.api.repeats import Repeats
 from mend.server.api.services import ObservedJournal, Services, WorldList
+from mend.server.dialogues.attendance import Attendance
 from mend.server.documents import DocumentLibrary
 from mend.server.fleets.fleets import Fleets
 from mend.server.models import RobotModels
@@ -76,6 +78,7 @@ ROUTES = (
     leaves,
     poses_api,
     dialogues,
+    questions,
     push_api,
     robots,
     pictures,
@@ -116,6 +119,7 @@ def create_app(
     off_loop: OffLoop | None = None,
     lifespan: Lifespan | None = None,
     wall_time_s: Callable[[], float] = time.time,
+    attendance: Attendance | None = None,
 ) -> FastAPI:
     """Build the application around a runtime and a journal.
 
@@ -144,6 +148,7 @@ def create_app(
         refusals,
         off_loop or OffLoop(settings.limits),
         wall_time_s,
+        attendance or Attendance(),
     )
     app.add_middleware(Gate, access=access, limits=settings.limits, refusals=refusals)
     app.add_middleware(AbsoluteForm)

@@ -46,8 +46,10 @@ from mend.server.journal.events import (
 from mend.server.journal.trouble import Sleep
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import (
+    ChosenView,
     DialogueView,
     LeafSaid,
+    QuestionBatchView,
     RobotView,
     RunSummary,
     RunView,
@@ -273,6 +275,15 @@ class MendClient:
     ) -> list[DialogueView]:
         return await self._get("/api/dialogues", list[DialogueView], status=status)
 
+    async def questions(self) -> list[QuestionBatchView]:
+        """The open questions, the most urgent first; those that may be answered alike together."""
+        return await self._get("/api/questions", list[QuestionBatchView])
+
+    async def choose_for_all(self, way: str, prompts: list[UUID], helper: str) -> list[ChosenView]:
+        """Choose one of a batch's `at_once` for its questions; what became of each."""
+        body = {"way": way, "prompts": [str(each) for each in prompts], "helper": helper}
+        return await self._post("/api/questions/choices", list[ChosenView], body)
+
     async def dialogue(self, dialogue: UUID) -> DialogueView:
         return await self._get(f"/api/dialogues/{dialogue}", DialogueView)
 
@@ -282,6 +293,11 @@ class MendClient:
         """Answer a prompt. A `RefusedError` has `problem.answered_by` if another was first."""
         body = {"prompt": str(prompt), "answer": answer, "helper": helper}
         return await self._post(f"/api/dialogues/{dialogue}/answers", Answered, body)
+
+    async def choose(self, dialogue: UUID, prompt: UUID, way: str, helper: str) -> Answered:
+        """Choose one of a prompt's `ways`; the last of its answers. Raises as `answer` does."""
+        body = {"prompt": str(prompt), "way": way, "helper": helper}
+        return await self._post(f"/api/dialogues/{dialogue}/choices", Answered, body)
 
     async def extend(self, dialogue: UUID, prompt: UUID, helper: str) -> DeadlineExtended:
         """Give the open question as much time again as it was first put for."""

@@ -137,6 +137,12 @@ class EventStream:
             type="answer", dialogue=str(dialogue), prompt=str(prompt), answer=answer
         )
 
+    async def choose(self, dialogue: UUID, prompt: UUID, way: str) -> dict[str, Any]:
+        """Choose one of a prompt's `ways`; returns and raises as `answer` does."""
+        return await self._command(
+            type="choose", dialogue=str(dialogue), prompt=str(prompt), way=way
+        )
+
     async def extend(self, dialogue: UUID, prompt: UUID) -> dict[str, Any]:
         """Give the open question more time; raises as `answer` does."""
         return await self._command(type="extend", dialogue=str(dialogue), prompt=str(prompt))

@@ -16,6 +16,7 @@ from mend.server.api.robot_socket import add_robot_route, robots_url
 from mend.server.app import build_access, create_app
 from mend.server.background import Endless
 from mend.server.believed_time import BelievedTime
+from mend.server.dialogues.attendance import Attendance
 from mend.server.dialogues.escalation import EscalationPolicy
 from mend.server.dialogues.mail import Mailer
 from mend.server.fixed_documents import GivenFiles, fixed_documents
@@ -166,6 +167,7 @@ async def _open(
     )
     public_url = settings.public_url or (None if is_everywhere(settings.host) else url)
     mail = _operator_mail(settings, public_url)
+    attendance = Attendance()
     runtime = Runtime(
         journal=journal,
         robots=registry,
@@ -188,6 +190,7 @@ async def _open(
         utc_now=lambda: datetime.now(UTC),
         poses=poses,
         refusals=refusals,
+        attendance=attendance,
     )
     fleets = Fleets(sites, runtime, journal, poses, utc_now=lambda: datetime.now(UTC))
     push = Push(
@@ -217,6 +220,7 @@ async def _open(
         speech_abilities=speech,
         refusals=refusals,
         off_loop=off_loop,
+        attendance=attendance,
     )
     add_robot_route(app, registry, access)
     server = Server(serve_config(app, settings), settings, refusals, tls)

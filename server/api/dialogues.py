@@ -36,6 +36,16 @@ class AnswerRequest(BaseModel):
     helper: HelperName | None = None
 
 
+class ChoiceRequest(BaseModel):
+    """One of a prompt's `ways`, chosen by one helper."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    prompt: Annotated[UUID, Field(strict=False)]
+    way: Annotated[str, Field(min_length=1, max_length=100)]
+    helper: HelperName | None = None
+
+
 class ReleaseRequest(BaseModel):
     """Who is no longer on it."""
 
@@ -100,6 +110,24 @@ async def answer_prompt(
     """Answer a prompt. The first answer wins; a later one gets 409 with `answered_by`."""
     return await services.runs.dialogues.answer(
         dialogue, body.prompt, body.answer, helper_of(caller, body.helper), caller.author
+    )
+
+
+@router.post("/{dialogue}/choices", operation_id="choose_way", status_code=201, responses=CHANGES)
+async def choose_way(
+    dialogue: DialogueId,
+    body: Annotated[
+        ChoiceRequest, Body(examples=[{"prompt": PROMPT, "way": "place", "helper": "anna"}])
+    ],
+    services: WithServices,
+    caller: WithCaller,
+) -> Answered:
+    """Choose one of a prompt's `ways`: all its answers are given at once, and the last returned.
+
+    The first answer wins, as of `answers`; a way that there is not now gets 409.
+    """
+    return await services.runs.dialogues.choose(
+        dialogue, body.prompt, body.way, helper_of(caller, body.helper), caller.author
     )
 
 

@@ -34,6 +34,15 @@ class Answer(HelperMessage):
     answer: Literal["yes", "no"]
 
 
+class Choose(HelperMessage):
+    """Choose one of a prompt's `ways`: all its answers are given at once."""
+
+    type: Literal["choose"]
+    dialogue: UUID
+    prompt: UUID
+    way: Annotated[str, Field(min_length=1, max_length=100)]
+
+
 class Claim(HelperMessage):
     """Show the others that you are on it; send it again to renew the lease.
 
@@ -80,7 +89,7 @@ class Ping(HelperMessage):
     type: Literal["ping"]
 
 
-AnyClientMessage = Auth | Answer | Claim | Release | Extend | Done | TakeBack | Ping
+AnyClientMessage = Auth | Answer | Choose | Claim | Release | Extend | Done | TakeBack | Ping
 
 ClientMessage = Annotated[AnyClientMessage, Field(discriminator="type")]
 

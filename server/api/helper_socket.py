@@ -1,12 +1,14 @@
 """The helpers' WebSocket: a snapshot, then every event after it; answers and claims come back."""
 
 import asyncio
+from contextlib import AbstractContextManager, nullcontext
 from typing import Annotated, Any
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 from starlette.websockets import WebSocket
 
+from mend.server.access.roles import Role
 from mend.server.api.helper_connection import (
     GOING_AWAY,
     TRY_AGAIN_LATER,
@@ -18,6 +20,7 @@ from mend.server.api.helper_messages import (
     Answer,
     AnyClientMessage,
     Auth,
+    Choose,
     Claim,
     Done,
     Extend,
@@ -66,11 +69,17 @@ class HelperSocket(HelperConnection[EventsQuery]):
     async def _serve(self, query: EventsQuery, helper: str) -> None:
         """Send a snapshot, then events while taking messages, until one of the two ends."""
         seq = await self._send_snapshot(query.after)
-        await until_one_ends(
-            self._send_events(seq, told=query.told),
-            self._send_trouble(),
-            self._receive_messages(helper),
-        )
+        with self._attending(helper):
+            await until_one_ends(
+                self._send_events(seq, told=query.told),
+                self._send_trouble(),
+                self._receive_messages(helper),
+            )
+
+    def _attending(self, helper: str) -> AbstractContextManager[None]:
+        """Whoever may answer is there to be asked, for as long as this connection lasts."""
+        may_answer = self._caller.principal.role.may(Role.HELPER)
+        return self._parts.attendance.attending(helper) if may_answer else nullcontext()
 
     # --- to the helper ------------------------------------------------------------------------
 
@@ -157,6 +166,10 @@ class HelperSocket(HelperConnection[EventsQuery]):
             case Answer():
                 done: BaseModel = await runs.dialogues.answer(
                     message.dialogue, message.prompt, message.answer, helper, self._author
+                )
+            case Choose():
+                done = await runs.dialogues.choose(
+                    message.dialogue, message.prompt, message.way, helper, self._author
                 )
             case Claim():
                 done = await runs.dialogues.claim(

@@ -38,6 +38,7 @@ DIALOGUE_AGAIN = {"dialogue": "$request.path.dialogue"}
 QUESTION = {"prompt": "$response.body#/prompt/prompt", "helper": "anna"}
 OF_DIALOGUE = (
     Link("answer_prompt", DIALOGUE_AGAIN, {**QUESTION, "answer": "yes"}),
+    Link("choose_way", DIALOGUE_AGAIN, {**QUESTION, "way": "$response.body#/prompt/ways/0/way"}),
     Link("extend_deadline", DIALOGUE_AGAIN, QUESTION),
     Link("claim_dialogue", DIALOGUE_AGAIN, {"helper": "anna"}),
     Link("say_help_is_done", DIALOGUE_AGAIN, {"helper": "anna"}),
@@ -109,6 +110,7 @@ LINKS: dict[tuple[str, str], tuple[Link, ...]] = {
     ("claim_dialogue", "200"): OF_DIALOGUE,
     ("release_dialogue", "200"): OF_DIALOGUE,
     ("answer_prompt", "201"): (Link("get_dialogue", DIALOGUE_AGAIN),),
+    ("choose_way", "201"): (Link("get_dialogue", DIALOGUE_AGAIN),),
     ("extend_deadline", "200"): (Link("get_dialogue", DIALOGUE_AGAIN),),
     ("say_help_is_done", "200"): (Link("get_dialogue", DIALOGUE_AGAIN),),
     ("take_back_promise", "200"): (Link("get_dialogue", DIALOGUE_AGAIN),),

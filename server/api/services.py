@@ -17,6 +17,7 @@ from mend.robots.link.shown_name import SHOWN
 from mend.server.access.access import Access
 from mend.server.access.deed_log import DeedLog
 from mend.server.access.principal import Caller
+from mend.server.dialogues.attendance import Attendance
 from mend.server.documents import DocumentLibrary
 from mend.server.fleets.fleets import Fleets
 from mend.server.journal.journal import Journal
@@ -80,6 +81,7 @@ class Services:
     refusals: Refusals = field(default_factory=Refusals)
     off_loop: OffLoop = field(default_factory=OffLoop)
     wall_time_s: Callable[[], float] = time.time
+    attendance: Attendance = field(default_factory=Attendance)
 
     def utc_now(self) -> datetime:
         """The date and time by the service's wall clock."""

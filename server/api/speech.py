@@ -52,7 +52,8 @@ class SpeechView(BaseModel):
 async def get_speech(services: WithServices) -> SpeechView:
     """Whether there is a voice and recognition, or why not; and what can be said."""
     texts, ears = services.speech.texts, services.speech.ears
-    said = {**PHRASES_OF[Vocabulary.PROMISE], **PHRASES_OF[Vocabulary.ANSWER]}
+    heard = (Vocabulary.PROMISE, Vocabulary.WAYS, Vocabulary.ANSWER)
+    said = {command: said for each in heard for command, said in PHRASES_OF[each].items()}
     return SpeechView(
         voice=Ability(available=False, why_not=texts.why_not)
         if isinstance(texts, NoVoice)
@@ -107,7 +108,7 @@ async def get_prompt_help_speech(
     found = await find_prompt(services.runs, services.journal, dialogue, prompt)
     if not found.answers:
         raise NotFoundError(f"the prompt {prompt} asks nothing")
-    return await _sound(services, help_text(found.answers))
+    return await _sound(services, help_text(found.answers, found.ways))
 
 
 @router.get(

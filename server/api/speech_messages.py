@@ -59,12 +59,16 @@ class Hearing(ServerMessage):
 
 
 class HeardMessage(ServerMessage):
-    """An utterance has ended; `command` None where it is not one."""
+    """An utterance has ended; `command` None where it is not one.
+
+    `way`: which of the prompt's `ways` was chosen by it.
+    """
 
     type: Literal["heard"] = "heard"
     command: Command | None
     phrase: str | None
     latency_ms: float
+    way: str | None = None
 
 
 class GaveUp(ServerMessage):

@@ -1,7 +1,6 @@
 """The speech WebSocket: one helper's microphone, and the conversation that it is part of."""
 
 import time
-from uuid import UUID
 
 from fastapi import APIRouter
 from pydantic import BaseModel
@@ -25,10 +24,11 @@ from mend.server.api.speech_messages import (
     speech_client_message,
 )
 from mend.server.speech import conversation as talking
+from mend.server.speech.chosen_way import way_meant
 from mend.server.speech.conversation import Act, EndReason, Saying, SpokenConversation
 from mend.server.speech.ear import NoEars
 from mend.server.speech.phrases import PROMISE_SORRY, SORRY
-from mend.server.speech.question import open_topic, wait_until_over
+from mend.server.speech.question import Topic, open_topic, wait_until_over
 from mend.server.speech.talk import Talk
 from mend.server.speech.vocabulary import Vocabulary
 from mend.server.speech.voice import NoVoice
@@ -120,7 +120,7 @@ class SpeechSocket(HelperConnection[HelperQuery]):
             self._parts.settings.subscriber_queue,
         )
         promised = topic.vocabulary is Vocabulary.PROMISE
-        aloud = Aloud(message.dialogue, message.prompt, audible=not self._silent, promised=promised)
+        aloud = Aloud(message, topic, audible=not self._silent)
         sorry = PROMISE_SORRY if promised else SORRY
         self._talk = Talk(
             SpokenConversation(topic.text, topic.help_text, time.monotonic, sorry),
@@ -128,6 +128,7 @@ class SpeechSocket(HelperConnection[HelperQuery]):
             lambda act: self._send(aloud.message(act)),
             over,
             topic.vocabulary,
+            topic.takes,
         )
         await self._talk.begin()
 
@@ -146,8 +147,10 @@ class SpeechSocket(HelperConnection[HelperQuery]):
 class Aloud:
     """How the acts of a conversation look on the wire, with the address of each sound."""
 
-    def __init__(self, dialogue: UUID, prompt: UUID, *, audible: bool, promised: bool) -> None:
-        base = f"/api/dialogues/{dialogue}/prompts/{prompt}/speech"
+    def __init__(self, about: Listen, topic: Topic, *, audible: bool) -> None:
+        base = f"/api/dialogues/{about.dialogue}/prompts/{about.prompt}/speech"
+        promised = topic.vocabulary is Vocabulary.PROMISE
+        self._ways = topic.ways
         fixed = "/api/speech/phrases"
         self._audio = {
             Saying.QUESTION: base,
@@ -166,7 +169,8 @@ class Aloud:
                 return Hearing()
             case talking.Understood(command=command, phrase=phrase, latency_s=latency_s):
                 latency_ms = round(latency_s * 1000, 1)
-                return HeardMessage(command=command, phrase=phrase, latency_ms=latency_ms)
+                way = way_meant(command, self._ways)
+                return HeardMessage(command=command, phrase=phrase, latency_ms=latency_ms, way=way)
             case talking.StopTrying():
                 return GaveUp()
             case talking.End(reason=reason):

@@ -159,6 +159,8 @@ class SpokenHelper:
                     await stream.answer(question.dialogue, question.prompt, "yes")
                 case Command.NO:
                     await stream.answer(question.dialogue, question.prompt, "no")
+                case Command.PLACE | Command.LEAVE_OUT | Command.NOT_NOW if heard.way is not None:
+                    await stream.choose(question.dialogue, question.prompt, heard.way)
                 case Command.STOP:
                     await self._client.pause(question.run)
                     self._tell("The run is paused.")

@@ -1,8 +1,10 @@
 """The ladder of an unanswered ask: again, to the next helpers, by mail, and then nobody.
 
-Every rung but the last is one prompt, so the number of an ask's prompts says where it stands.
+Every rung but the last is one prompt, so an ask's prompts say where it stands. Before the operators
+are written to, and before it is given up, whoever is signed in and on nothing else is called once.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -16,7 +18,8 @@ class EscalationPolicy(BaseModel):
     """Whom an ask goes to and for how long, in seconds of the run's clock.
 
     It is first put to the first of `helpers` (to everybody where none is named) and asked again
-    `repeats` times, then goes to each other helper in turn, then is mailed to `operators`.
+    `repeats` times, then goes to each other helper in turn, then to those who are signed in and
+    were not asked last, then is mailed to `operators`.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -60,21 +63,45 @@ class Exhausted:
 Rung = Repeat | ToHelper | Mail | Exhausted
 
 
-def first_helper(policy: EscalationPolicy) -> str | None:
-    """Whom an ask is put to first; None is everybody."""
-    return policy.helpers[0] if policy.helpers else None
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """How far an ask has come: whom each of its prompts was for, and whether the operators know."""
+
+    asked: tuple[str | None, ...]
+    mailed: bool = False
 
 
-def next_rung(policy: EscalationPolicy, prompts: int) -> Rung:
-    """What follows when the last of an ask's `prompts` prompts (1 or more) was not answered.
+def first_helper(
+    policy: EscalationPolicy, idle: Sequence[str] = (), *, waits: bool = True
+) -> str | None:
+    """Whom an ask is put to first; None is everybody.
 
-    Raises `ValueError` below 1: an ask that was never put cannot be escalated.
+    Where the robot does not wait nobody else can be asked later: of `idle`, who are signed in and
+    on nothing else, one is asked rather than a helper who is not.
     """
+    if not policy.helpers:
+        return None
+    if waits or not idle:
+        return policy.helpers[0]
+    return next((each for each in policy.helpers if each in idle), idle[0])
+
+
+def next_rung(policy: EscalationPolicy, standing: Standing, idle: Sequence[str] = ()) -> Rung:
+    """What follows when the last of an ask's prompts was not answered.
+
+    `idle`: who is signed in and on nothing else. Raises `ValueError` without a prompt: an ask that
+    was never put cannot be escalated.
+    """
+    prompts, within_s = len(standing.asked), policy.answer_within_s
     if prompts < 1:
-        raise ValueError(f"an ask has 1 or more prompts when it is escalated, not {prompts}")
-    within_s = policy.answer_within_s
+        raise ValueError("an ask has 1 or more prompts when it is escalated, not 0")
     ladder: list[Rung] = [Repeat(first_helper(policy), within_s)] * policy.repeats
     ladder += [ToHelper(helper, within_s) for helper in policy.helpers[1:]]
-    if policy.operators:
-        ladder.append(Mail(policy.operators, policy.mail_answer_within_s))
-    return ladder[prompts - 1] if prompts <= len(ladder) else Exhausted()
+    if prompts <= len(ladder):
+        return ladder[prompts - 1]
+    asked_last = standing.asked[len(ladder) :]
+    if policy.helpers and (unasked := [each for each in idle if each not in asked_last]):
+        return ToHelper(unasked[0], within_s)
+    if policy.operators and not standing.mailed:
+        return Mail(policy.operators, policy.mail_answer_within_s)
+    return Exhausted()

@@ -1,11 +1,10 @@
 """Keeps a run's open dialogues going: answers, deadlines, escalation, and what looks have seen."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Literal
 from uuid import UUID, uuid4
 
 from mend.dialogue.outlook import Outlook
-from mend.dialogue.script import Ask, Remark, Turn
+from mend.dialogue.script import Answer, Ask, Remark, Turn, Way
 from mend.dialogue.spoken import spoken
 from mend.dialogue.wording import sentence
 from mend.errors import ConflictError, NotFoundError
@@ -15,6 +14,7 @@ from mend.server.dialogues.escalation import (
     Exhausted,
     Mail,
     Repeat,
+    Standing,
     ToHelper,
     first_helper,
     next_rung,
@@ -44,7 +44,10 @@ SendMail = Callable[[ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None
 
 
 class DialogueDriver:
-    """Drives the dialogues of one run. `person` is None where nobody is simulated."""
+    """Drives the dialogues of one run. `person` is None where nobody is simulated.
+
+    `idle`: who is signed in to help and on nothing.
+    """
 
     def __init__(
         self,
@@ -53,8 +56,10 @@ class DialogueDriver:
         policy: EscalationPolicy,
         person: Person | None,
         send_mail: SendMail,
+        idle: Callable[[], Sequence[str]] = tuple,
     ) -> None:
         self._context = context
+        self._idle = idle
         self._answers = answers
         self._policy = policy
         self._promises = Promises(context, person)
@@ -95,7 +100,7 @@ class DialogueDriver:
         clock = self._context.clock
         scripted = self._scripted(dialogue)
         if scripted is not None and has_come(clock, scripted[1]):
-            await self._take_answer(dialogue, ask, scripted[0], "script", proxy)
+            await self._take_answers(dialogue, ask, [scripted[0]], "script", proxy)
             return True
         assert ask.deadline is not None, "every question has a deadline"
         if has_come(clock, ask.deadline):
@@ -169,7 +174,7 @@ class DialogueDriver:
         self,
         dialogue: DialogueState,
         prompt: UUID,
-        answer: Literal["yes", "no"],
+        answer: Answer,
         helper: str,
         proxy: RobotProxy,
         author: ev.Author | None = None,
@@ -179,16 +184,28 @@ class DialogueDriver:
         Raises `LostRaceError`, `ConflictError` (no longer open) or `NotFoundError` (no such
         prompt).
         """
-        if prompt not in dialogue.prompts:
-            raise NotFoundError(f"there is no prompt {prompt} in this dialogue")
-        if prompt in dialogue.answers:
-            raise LostRaceError(prompt, dialogue.answers[prompt].helper)
-        ask = dialogue.open_ask
-        if dialogue.closed is not None:
-            raise ConflictError(f"this dialogue is closed ({dialogue.closed})")
-        if ask is None or ask.prompt != prompt:
-            raise ConflictError("this prompt does not wait for an answer")
-        return await self._take_answer(dialogue, ask, answer, helper, proxy, author)
+        ask = _open_ask(dialogue, prompt)
+        return await self._take_answers(dialogue, ask, [answer], helper, proxy, author)
+
+    async def choose(
+        self,
+        dialogue: DialogueState,
+        prompt: UUID,
+        way: str,
+        helper: str,
+        proxy: RobotProxy,
+        author: ev.Author | None = None,
+    ) -> ev.Answered:
+        """Take all the answers that lead to a way of help; returns the last of them.
+
+        Raises as `answer` does, and `ConflictError` where there is no such way to answer now.
+        """
+        ask = _open_ask(dialogue, prompt)
+        ways = dialogue.conversation.ways
+        chosen = next((each for each in ways if each.name == way), None)
+        if chosen is None:
+            raise ConflictError(_no_such_way(way, ways))
+        return await self._take_answers(dialogue, ask, chosen.answers, helper, proxy, author)
 
     async def extend(
         self,
@@ -231,7 +248,7 @@ class DialogueDriver:
     def _make(self, dialogue: DialogueState) -> DialogueEvents:
         return DialogueEvents(self._context.stamp, dialogue.id, dialogue.raised)
 
-    def _scripted(self, dialogue: DialogueState) -> tuple[Literal["yes", "no"], float] | None:
+    def _scripted(self, dialogue: DialogueState) -> tuple[Answer, float] | None:
         """The scripted answer to the open question and when it is due.
 
         Who takes longer than the deadline answers while the question is put again.
@@ -245,21 +262,26 @@ class DialogueDriver:
                 due.append((scripted.answer, put_at + scripted.delay_s))
         return min(due, key=lambda each: each[1], default=None)
 
-    async def _take_answer(
+    async def _take_answers(
         self,
         dialogue: DialogueState,
         ask: ev.Prompt,
-        answer: Literal["yes", "no"],
+        answers: Sequence[Answer],
         helper: str,
         proxy: RobotProxy,
         author: ev.Author | None = None,
     ) -> ev.Answered:
+        """Answer the open question, and each that follows from that; returns the last answer."""
         make = self._make(dialogue)
-        before: list[ev.Event] = [make.answered(ask, answer, helper, author)]
+        events: list[ev.Event] = []
         if dialogue.claim is not None and dialogue.claim.helper != helper:
-            before.insert(0, make.released(dialogue.claim.helper, expired=False, author=author))
-        committed = await self._converse(dialogue, answer, before, proxy, helper)
-        return next(each for each in committed if isinstance(each, ev.Answered))
+            events.append(make.released(dialogue.claim.helper, expired=False, author=author))
+        for number, answer in enumerate(answers, start=1):
+            said = self._said_after(dialogue, answers[:number], proxy, helper)
+            events += [make.answered(ask, answer, helper, author), *said]
+            ask = next((each for each in said if isinstance(each, ev.Prompt)), ask)
+        committed = await self._context.commit(events)
+        return [each for each in committed if isinstance(each, ev.Answered)][-1]
 
     async def _nobody_answered(
         self, dialogue: DialogueState, ask: ev.Prompt, proxy: RobotProxy
@@ -268,7 +290,7 @@ class DialogueDriver:
             await self._converse(dialogue, "silence", [], proxy)
             return
         make = self._make(dialogue)
-        rung = next_rung(self._policy, ask.version)
+        rung = next_rung(self._policy, _standing(dialogue), self._idle())
         if isinstance(rung, Exhausted):
             await self._converse(dialogue, "silence", [], proxy)
             return
@@ -296,12 +318,14 @@ class DialogueDriver:
         worded = next(each for each in turns if isinstance(each, Ask))
         deadline = self._context.clock.now() + rung.answer_within_s
         to = ask.to if isinstance(rung, Mail) else rung.helper
-        effect = f"{self._if_silent(ask.version + 1)}{worded.timeout_effect}"
+        mailed = dialogue.mailed or isinstance(rung, Mail)
+        standing = Standing((*dialogue.asked_of, to), mailed)
+        effect = f"{self._if_silent(standing)}{worded.timeout_effect}"
         return self._make(dialogue).repeat(ask, worded, deadline, to, effect)
 
-    def _if_silent(self, version: int) -> str:
+    def _if_silent(self, standing: Standing) -> str:
         """What is done before silence counts as an answer, as the beginning of a sentence."""
-        match next_rung(self._policy, version):
+        match next_rung(self._policy, standing, self._idle()):
             case Repeat():
                 done = "I ask again"
             case ToHelper(helper=helper):
@@ -324,13 +348,19 @@ class DialogueDriver:
         pictures: Mapping[UUID, bytes] | None = None,
     ) -> list[ev.Event]:
         """Commit a call to the conversation: the events before it, and what it says to it."""
+        events = self._said_after(dialogue, [call], proxy, helper)
+        return await self._context.commit([*before, *events], pictures=pictures)
+
+    def _said_after(
+        self, dialogue: DialogueState, calls: Sequence[str], proxy: RobotProxy, helper: str
+    ) -> list[ev.Event]:
+        """The events of what the conversation says to the last of more calls."""
         script = self._context.state.scripts[dialogue.raised.issue]
-        turns = dialogue.turns_after([call], script, self._outlook(dialogue, proxy))
+        turns = dialogue.turns_after(calls, script, self._outlook(dialogue, proxy))
         make = self._make(dialogue)
         stopped = self._why_it_cannot_go_on(dialogue, proxy)
         waits = dialogue.raised.interrupts
-        events = self._of_turns(make, turns, helper, waits=waits, stopped=stopped)
-        return await self._context.commit([*before, *events], pictures=pictures)
+        return self._of_turns(make, turns, helper, waits=waits, stopped=stopped)
 
     def _why_it_cannot_go_on(self, dialogue: DialogueState, proxy: RobotProxy) -> str | None:
         """Why a robot cannot go on with what it was doing when it needed help; None if it can."""
@@ -363,11 +393,12 @@ class DialogueDriver:
     ) -> list[ev.Event]:
         """The events of turns; only where the robot `waits` for an answer is it asked for again."""
         now, settings = self._context.clock.now(), self._context.settings
+        to = first_helper(self._policy, self._idle(), waits=waits)
         return make.of_turns(
             turns,
             ask_deadline=now + self._policy.answer_within_s,
-            if_silent=self._if_silent(1) if waits else "",
-            to=first_helper(self._policy),
+            if_silent=self._if_silent(Standing((to,))) if waits else "",
+            to=to,
             help_until=now + settings.help_window_s,
             helper=helper,
             stopped=stopped,
@@ -402,3 +433,28 @@ class DialogueDriver:
             return None
         speed = self._context.state.started.speed
         return 1.0 if speed == "max" else min(1.0, speed)
+
+
+def _standing(dialogue: DialogueState) -> Standing:
+    return Standing(tuple(dialogue.asked_of), dialogue.mailed)
+
+
+def _open_ask(dialogue: DialogueState, prompt: UUID) -> ev.Prompt:
+    """The open question. Raises `LostRaceError`, `ConflictError` or `NotFoundError`."""
+    if prompt not in dialogue.prompts:
+        raise NotFoundError(f"there is no prompt {prompt} in this dialogue")
+    if prompt in dialogue.answers:
+        raise LostRaceError(prompt, dialogue.answers[prompt].helper)
+    if dialogue.closed is not None:
+        raise ConflictError(f"this dialogue is closed ({dialogue.closed})")
+    ask = dialogue.open_ask
+    if ask is None or ask.prompt != prompt:
+        raise ConflictError("this prompt does not wait for an answer")
+    return ask
+
+
+def _no_such_way(way: str, ways: Sequence[Way]) -> str:
+    if not ways:
+        return "this question takes yes or no, and no way of help by its name"
+    there_are = ", ".join(each.name for each in ways)
+    return f"'{way}' is no way to answer this question: there are {there_are}"

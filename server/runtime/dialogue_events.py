@@ -6,7 +6,7 @@ from typing import Any, Protocol
 from uuid import UUID, uuid4
 
 from mend.dialogue.evidence import Change, LookOutcome
-from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Help, Remark, Turn
+from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Help, Remark, Turn, Way
 from mend.server.journal import events as ev
 from mend.server.runtime.unseen_help import Unseen
 from mend.tasks.resolution import Resolution
@@ -59,6 +59,8 @@ class DialogueEvents:
             deadline=deadline,
             timeout_effect=if_silent,
             to=to,
+            headline=ask.headline,
+            ways=[_option(way) for way in ask.ways],
         )
 
     def repeat(
@@ -233,6 +235,17 @@ class DialogueEvents:
             reason=reason,
             failed_attempt=failed,
         )
+
+
+def _option(way: Way) -> ev.WayOption:
+    return ev.WayOption(
+        way=way.name,
+        deed=way.deed,
+        label=way.label,
+        effect=way.effect,
+        answers=list(way.answers),
+        final=way.final,
+    )
 
 
 def _told(awaiting: ev.HelpAwaited, unseen: Unseen) -> dict[str, Any]:

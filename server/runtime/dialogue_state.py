@@ -66,6 +66,10 @@ class DialogueState:
     extensions: dict[UUID, int] = field(default_factory=dict)
     """How often each question's deadline may still be moved, where it was before."""
     clip: list[ev.ClipPicture] = field(default_factory=list)
+    asked_of: list[str | None] = field(default_factory=list)
+    """Whom each prompt of the latest question was for."""
+    mailed: bool = False
+    """Whether the operators were written to about it."""
 
     @property
     def id(self) -> UUID:
@@ -122,6 +126,9 @@ class DialogueState:
     def _(self, event: ev.Prompt) -> None:
         self.prompt = self.prompts[event.prompt] = event
         if event.kind == "ask":
+            if self.asked is None or self.asked.prompt != event.prompt:
+                self.asked_of, self.mailed = [], False
+            self.asked_of.append(event.to)
             self.asked = event
             self.asked_for_s = None if event.deadline is None else event.deadline - event.time
             self.awaiting = self.reported = None
@@ -132,6 +139,10 @@ class DialogueState:
         moved = self.asked.model_copy(update={"deadline": event.deadline})
         self.prompt = self.asked = self.prompts[event.prompt] = moved
         self.extensions[event.prompt] = event.extensions_left
+
+    @_apply.register
+    def _(self, event: ev.Escalated) -> None:
+        self.mailed = self.mailed or event.channel == "mail"
 
     @_apply.register
     def _(self, event: ev.ClipRecorded) -> None:

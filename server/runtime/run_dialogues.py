@@ -1,28 +1,45 @@
 """The dialogues of all runs, and what helpers do in them."""
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from itertools import islice
 from typing import Literal, cast
 from uuid import UUID
 
-from mend.errors import ConflictError
+from mend.errors import ConflictError, NotFoundError, RefusalError
 from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
 from mend.server.runtime.dialogue_state import DialogueState
+from mend.server.runtime.question_queue import (
+    OpenQuestion,
+    batches_of,
+    open_questions,
+    ways_for_all,
+)
+from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run import Run
+from mend.server.runtime.run_state import RunState
 from mend.server.runtime.run_states import RunStates
 from mend.server.runtime.run_views import dialogue_view
-from mend.server.runtime.views import DialogueView
+from mend.server.runtime.views import ChosenView, DialogueView, QuestionBatchView
+
+Take = Callable[[Run, DialogueState, RobotProxy], Awaitable[ev.Answered]]
+"""Takes a helper's answer in a run, to a dialogue that a robot of it has opened."""
 
 
 class RunDialogues:
     """Implements `mend.server.runtime.service.DialogueService`.
 
     `running`: a run that goes on. It raises `NotFoundError`, `UnreadableError` and `ConflictError`.
+    `now_of`: the clock of one.
     """
 
-    def __init__(self, states: RunStates, running: Callable[[UUID], Awaitable[Run]]) -> None:
-        self._states, self._running = states, running
+    def __init__(
+        self,
+        states: RunStates,
+        running: Callable[[UUID], Awaitable[Run]],
+        now_of: Callable[[RunState], float],
+    ) -> None:
+        self._states, self._running, self._now_of = states, running, now_of
 
     async def page(
         self, status: Literal["open", "closed"] | None, limit: int, offset: int
@@ -40,6 +57,43 @@ class RunDialogues:
         """How many dialogues are open."""
         return sum(1 for _ in self._states.open_dialogues())
 
+    def questions(self) -> list[QuestionBatchView]:
+        """The open questions of all runs, the most urgent first; those alike stand together."""
+        return batches_of(self._open_questions())
+
+    async def choose_for_all(
+        self, way: str, prompts: Sequence[UUID], helper: str, author: ev.Author | None = None
+    ) -> list[ChosenView]:
+        """Choose a way for several open questions; each is told what became of it.
+
+        Raises `NotFoundError` where one of them is not open, and `ConflictError` where the way is
+        not safe to be chosen for all of them at once.
+        """
+        open_ = {each.view.prompt: each for each in self._open_questions()}
+        for prompt in prompts:
+            if prompt not in open_:
+                raise NotFoundError(f"there is no open question {prompt}")
+        batch = [open_[prompt] for prompt in dict.fromkeys(prompts)]
+        if len(batch) > 1 and way not in {each.way for each in ways_for_all(batch)}:
+            raise ConflictError(
+                f"'{way}' cannot be chosen for these {len(batch)} questions at once: "
+                "answer each on its own"
+            )
+        return [await self._chosen(each, way, helper, author) for each in batch]
+
+    async def _chosen(
+        self, question: OpenQuestion, way: str, helper: str, author: ev.Author | None
+    ) -> ChosenView:
+        dialogue, prompt = question.view.dialogue, question.view.prompt
+        try:
+            await self.choose(dialogue, prompt, way, helper, author)
+        except RefusalError as error:
+            return ChosenView(dialogue=dialogue, prompt=prompt, refused=str(error))
+        return ChosenView(dialogue=dialogue, prompt=prompt)
+
+    def _open_questions(self) -> list[OpenQuestion]:
+        return open_questions((state, self._now_of(state)) for state in self._states.all_going_on())
+
     async def view(self, dialogue: UUID) -> DialogueView:
         """One dialogue. Raises `NotFoundError` or `UnreadableError`."""
         return dialogue_view(await self._states.find_dialogue(dialogue))
@@ -56,13 +110,40 @@ class RunDialogues:
 
         Raises `NotFoundError`, `LostRaceError` or `ConflictError`.
         """
+        return await self._answered(
+            dialogue,
+            prompt,
+            lambda run, found, proxy: run.dialogues.answer(
+                found, prompt, answer, helper, proxy, author
+            ),
+        )
+
+    async def choose(
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        way: str,
+        helper: str,
+        author: ev.Author | None = None,
+    ) -> ev.Answered:
+        """Choose a way of help at once: what it stands for is answered, and the last returned.
+
+        Raises as `answer` does, and `ConflictError` where there is no such way now.
+        """
+        return await self._answered(
+            dialogue,
+            prompt,
+            lambda run, found, proxy: run.dialogues.choose(
+                found, prompt, way, helper, proxy, author
+            ),
+        )
+
+    async def _answered(self, dialogue: UUID, prompt: UUID, take: Take) -> ev.Answered:
         found = await self._put_to_people(dialogue)
         try:
             run = await self._running(found.opened.run)
             proxy = run.proxies[found.opened.robot]
-            answered = await run.request(
-                lambda: run.dialogues.answer(found, prompt, answer, helper, proxy, author)
-            )
+            answered = await run.request(lambda: take(run, found, proxy))
         except ConflictError:
             # Who was first is told also where that answer has ended the run.
             if prompt in found.answers:

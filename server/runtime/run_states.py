@@ -114,6 +114,10 @@ class RunStates:
 
     # --- Dialogues ----------------------------------------------------------------------------
 
+    def all_going_on(self) -> list[RunState]:
+        """The states of all runs that go on."""
+        return list(self._going_on.values())
+
     def open_dialogues(self) -> Iterator[DialogueState]:
         return (each for state in self._going_on.values() for each in state.open_dialogues)
 

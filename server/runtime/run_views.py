@@ -183,6 +183,8 @@ def dialogue_view(dialogue: DialogueState) -> DialogueView:
             timeout_effect=prompt.timeout_effect,
             within_s=dialogue.asked_for_s if prompt.kind == "ask" else None,
             extensions_left=dialogue.extensions_left if prompt.kind == "ask" else 0,
+            headline=prompt.headline,
+            ways=prompt.ways,
         ),
         awaiting=awaiting,
         answered_by=last_answer.helper if last_answer else None,

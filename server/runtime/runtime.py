@@ -15,6 +15,7 @@ from mend.dialogue.script import Script
 from mend.errors import ConflictError, NotFoundError, UnreadableError, WrongInputError
 from mend.server.camera_picture import CameraPicture
 from mend.server.dialogues.answers import answer_source
+from mend.server.dialogues.attendance import Attendance
 from mend.server.dialogues.escalation import EscalationPolicy
 from mend.server.errors import BusyError
 from mend.server.journal import events as ev
@@ -78,6 +79,7 @@ class Runtime:
         utc_now: Callable[[], datetime],
         poses: Poses,
         refusals: Refusals | None = None,
+        attendance: Attendance | None = None,
     ) -> None:
         self._journal = journal
         self._robots = robots
@@ -90,15 +92,20 @@ class Runtime:
         self._utc_now = utc_now
         self._poses = poses
         self._refusals = refusals or Refusals()
+        self._attendance = attendance or Attendance()
         self._states = RunStates(journal, scripts)
         self._runs: dict[UUID, Run] = {}
         self._writing_json = asyncio.Lock()
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
         self._owners = RobotOwners(robots)
-        self.dialogues = RunDialogues(self._states, self._running)
+        self.dialogues = RunDialogues(self._states, self._running, self._now_of)
         self._closing = False
         self._new_runs = NewRuns(preparation, worlds, utc_now, settings.limits)
         journal.trouble.watch(self._journal_troubled)
+
+    def _now_of(self, state: RunState) -> float:
+        run = self._runs.get(state.id)
+        return state.time if run is None else run.context.clock.now()
 
     # --- Beginning and ending -----------------------------------------------------------------
 
@@ -247,6 +254,7 @@ class Runtime:
             self._policy,
             _person_of(state, scenario) if hardware.simulated else None,
             partial(self._send_mail, state),
+            lambda: self._attendance.idle(self._states.open_dialogues()),
         )
         run = Run(context, proxies, dialogues, hardware, self._poses.open(state))
         try:

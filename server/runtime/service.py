@@ -1,6 +1,6 @@
 """The runtime as the API, the sockets and the command line see it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Literal, Protocol
 from uuid import UUID
 
@@ -15,8 +15,10 @@ from mend.server.journal.events import (
 from mend.server.journal.run_index import RunPage
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import (
+    ChosenView,
     DialogueView,
     LeafSaid,
+    QuestionBatchView,
     RobotView,
     RunStatus,
     RunSummary,
@@ -38,6 +40,16 @@ class DialogueService(Protocol):
         """A page of dialogues, oldest first."""
         ...
 
+    def questions(self) -> list[QuestionBatchView]:
+        """The open questions of all runs, the most urgent first; those alike stand together."""
+        ...
+
+    async def choose_for_all(
+        self, way: str, prompts: Sequence[UUID], helper: str, author: Author | None = None
+    ) -> list[ChosenView]:
+        """Choose a way for several open questions. Raises `NotFoundError`, `ConflictError`."""
+        ...
+
     def count_open(self) -> int:
         """How many dialogues are open."""
         ...
@@ -55,6 +67,20 @@ class DialogueService(Protocol):
         author: Author | None = None,
     ) -> Answered:
         """Answer a prompt: the first answer wins. Raises `LostRaceError`, `ConflictError`."""
+        ...
+
+    async def choose(
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        way: str,
+        helper: str,
+        author: Author | None = None,
+    ) -> Answered:
+        """Answer a prompt and what follows from it by a way of help; the last answer.
+
+        Raises as `answer` does.
+        """
         ...
 
     async def extend(

@@ -9,7 +9,13 @@ from pydantic import BaseModel, ConfigDict
 
 from mend.dialogue.script import Help
 from mend.robots.link.messages import Detection
-from mend.server.journal.events import AnswerOption, ClipPicture, MissingPart, UnseenPart
+from mend.server.journal.events import (
+    AnswerOption,
+    ClipPicture,
+    MissingPart,
+    UnseenPart,
+    WayOption,
+)
 from mend.server.runtime.leaf_words import LeafDeed
 
 
@@ -63,6 +69,8 @@ class PromptView(View):
     within_s: float | None = None
     """How long the question was to wait when it was put; an extension adds as much again."""
     extensions_left: int = 0
+    headline: str = ""
+    ways: list[WayOption] = []
 
 
 class AwaitedHelp(View):
@@ -117,6 +125,57 @@ class DialogueView(View):
     """What the monitor saw in `picture`."""
     help: AwaitedHelp | None = None
     unseen_help: UnseenHelpView | None = None
+
+
+class QuestionView(View):
+    """One open question, as it stands in a queue.
+
+    `tree` is its run's task, `place` where its leaf belongs. `left_s`: how many seconds it is
+    waited for still; None while that does not run out. `opened`: when the robot asked first.
+    """
+
+    dialogue: UUID
+    prompt: UUID
+    run: UUID
+    tree: str
+    robot: str
+    name: str
+    object: str | None
+    place: str | None
+    headline: str
+    left_s: float | None
+    opened: datetime
+    attempt: int
+    attempts: int
+    to: str | None
+    claimed_by: str | None
+
+
+class BatchWayView(View):
+    """A way that may be chosen for all of a batch at once."""
+
+    way: str
+    label: str
+
+
+class QuestionBatchView(View):
+    """Questions that may be answered alike, the most urgent first; mostly a single one.
+
+    `at_once`: what may be chosen for all of them with one press, as it is safe to.
+    """
+
+    issue: str
+    headline: str
+    at_once: list[BatchWayView]
+    questions: list[QuestionView]
+
+
+class ChosenView(View):
+    """What became of a choice for one of several questions; `refused` says why it counts not."""
+
+    dialogue: UUID
+    prompt: UUID
+    refused: str | None = None
 
 
 class RunResult(View):

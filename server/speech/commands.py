@@ -16,6 +16,10 @@ class Command(StrEnum):
     """What was promised is done."""
     CANNOT = "cannot"
     """It cannot be done after all."""
+    PLACE = "place"
+    """Whoever is asked places the object themselves."""
+    LEAVE_OUT = "leave_out"
+    NOT_NOW = "not_now"
 
 
 PHRASES: Mapping[Command, tuple[str, ...]] = {

@@ -32,7 +32,7 @@ class EndReason(StrEnum):
     """Why a conversation ended."""
 
     HEARD = "heard"
-    """Yes, no, stop, done or that it cannot be."""
+    """Yes, no, a way of help, stop, done or that it cannot be."""
     GAVE_UP = "gave_up"
     CANCELLED = "cancelled"
     REPLACED = "replaced"
@@ -189,8 +189,6 @@ class SpokenConversation:
         _CALLS.require(self._state, SpokenCall.UTTERANCE)
         heard = Understood(command, phrase, latency_s)
         match command:
-            case Command.YES | Command.NO | Command.STOP | Command.DONE | Command.CANNOT:
-                return [heard, *self._end(EndReason.HEARD)]
             case Command.REPEAT:
                 return [heard, *self._say(Saying.QUESTION)]
             case Command.HELP:
@@ -200,6 +198,8 @@ class SpokenConversation:
                 return [heard, *self._say(Saying.SORRY)]
             case None:
                 return [heard, StopTrying(), *self._end(EndReason.GAVE_UP)]
+            case _:
+                return [heard, *self._end(EndReason.HEARD)]
 
     def nothing_said(self) -> list[Act]:
         """What began was no speech after all."""

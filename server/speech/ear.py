@@ -28,14 +28,18 @@ MAX_BACKLOG_BYTES = 5 * 32_000
 """Five seconds of sound; an ear so far behind has lost the conversation."""
 
 MOST_KEPT = 2
-"""Each takes about 80 MB, and more once it has heard of promises."""
+"""Each takes about 80 MB, and more for each vocabulary that it has heard with."""
 
 HEADER = struct.Struct("<dI")
 """Before each piece of sound: when it came (monotonic seconds), and its bytes."""
 
 BREAK = 0
 """Instead of a number of bytes: what came before does not belong to what comes next."""
-AFRESH: Mapping[Vocabulary, int] = {Vocabulary.ANSWER: 2**32 - 1, Vocabulary.PROMISE: 2**32 - 2}
+AFRESH: Mapping[Vocabulary, int] = {
+    Vocabulary.ANSWER: 2**32 - 1,
+    Vocabulary.PROMISE: 2**32 - 2,
+    Vocabulary.WAYS: 2**32 - 3,
+}
 """Instead of a number of bytes: another conversation begins with that vocabulary; it is `ready`
 then."""
 

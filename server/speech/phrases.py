@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-from mend.server.journal.events import AnswerOption
+from mend.server.journal.events import AnswerOption, WayOption
+from mend.server.speech.chosen_way import way_meant
+from mend.server.speech.commands import Command
 
 SORRY = "Sorry, please say yes or no."
 
@@ -22,10 +24,20 @@ FIXED: Mapping[str, str] = {
 """By the name under which their sound is served."""
 
 
-def help_text(answers: Sequence[AnswerOption]) -> str:
+_SAID = {Command.PLACE: "I'll place it myself", Command.LEAVE_OUT: "leave it out"}
+
+
+def help_text(answers: Sequence[AnswerOption], ways: Sequence[WayOption] = ()) -> str:
     """What yes and no will each do, and what else can be said."""
     effects = [f"If you say {each.value}: {each.effect}" for each in answers]
-    return " ".join([*effects, "You can also say: repeat, or stop."])
+    chosen = [said for command, said in _SAID.items() if way_meant(command, ways) not in _of(ways)]
+    more = ", ".join([*chosen, *(["not now"] if len(ways) > 2 else []), "repeat"])
+    return " ".join([*effects, f"You can also say: {more}, or stop."])
+
+
+def _of(ways: Sequence[WayOption]) -> tuple[str | None, ...]:
+    """What need not be told: what there is not, and what yes does."""
+    return (None, *(each.way for each in ways[:1]))
 
 
 def effect_text(answer: AnswerOption) -> str:

@@ -1,6 +1,6 @@
 """What a conversation is about, a question or a promise: finding it, and noticing its end."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from dataclasses import dataclass
 from uuid import UUID
 
@@ -11,12 +11,15 @@ from mend.server.journal.events import (
     DialogueEvent,
     Event,
     Prompt,
+    WayOption,
     any_event,
 )
 from mend.server.journal.journal import Journal, JournalClosedError
 from mend.server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
 from mend.server.runtime.service import RunService
 from mend.server.runtime.views import PromptView
+from mend.server.speech.chosen_way import CHOICES, way_meant
+from mend.server.speech.commands import Command
 from mend.server.speech.conversation import EndReason
 from mend.server.speech.phrases import PROMISE_HELP, help_text
 from mend.server.speech.vocabulary import Vocabulary
@@ -55,11 +58,16 @@ async def _events_of(journal: Journal, run: UUID, dialogue: UUID) -> AsyncIterat
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """What is said first, what on `help`, and what is listened for."""
+    """What is said first, what on `help`, and what is listened for, `ways` of help among it."""
 
     text: str
     help_text: str
     vocabulary: Vocabulary
+    ways: Sequence[WayOption] = ()
+
+    def takes(self, command: Command) -> bool:
+        """Whether a command means anything here: no way is chosen that there is not."""
+        return command not in CHOICES or way_meant(command, self.ways) is not None
 
 
 async def open_topic(runs: RunService, dialogue: UUID, prompt: UUID) -> Topic:
@@ -74,7 +82,11 @@ async def open_topic(runs: RunService, dialogue: UUID, prompt: UUID) -> Topic:
         raise ConflictError(f"the prompt {prompt} is not the last one of this dialogue")
     if view.awaiting == "help":
         return Topic(view.prompt.text, PROMISE_HELP, Vocabulary.PROMISE)
-    return Topic(view.prompt.text, help_text(view.prompt.answers), Vocabulary.ANSWER)
+    ways = view.prompt.ways
+    # Of two ways the second is the no to the first.
+    vocabulary = Vocabulary.WAYS if len(ways) > 2 else Vocabulary.ANSWER
+    said = help_text(view.prompt.answers, ways)
+    return Topic(view.prompt.text, said, vocabulary, ways if len(ways) > 2 else ())
 
 
 async def wait_until_over(

@@ -96,7 +96,7 @@ async def render_prompts(texts: SpokenTexts, journal: Journal) -> None:
 async def _render_prompt(texts: SpokenTexts, text: str) -> None:
     event = any_event.validate_json(text)
     if isinstance(event, Prompt):
-        more = [help_text(event.answers)] if event.answers else []
+        more = [help_text(event.answers, event.ways)] if event.answers else []
         await _render_all(texts, [event.text, *more])
 
 

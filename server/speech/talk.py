@@ -5,6 +5,7 @@ import logging
 from collections.abc import Awaitable, Callable, Coroutine
 from typing import Any
 
+from mend.server.speech.commands import Command
 from mend.server.speech.conversation import Act, EndReason, SpokenConversation, State
 from mend.server.speech.ear import Ear, EarLostError, EarReport, Ears, TooManyConversationsError
 from mend.server.speech.vocabulary import Vocabulary
@@ -18,7 +19,7 @@ class Talk:
     """One spoken conversation, from `begin` to its one `End`.
 
     `perform` is awaited for each act, in order, one at a time. `over` is awaited for the reason
-    why the question waits for no answer any more.
+    why the question waits for no answer any more. A command that it `takes` not is not understood.
     """
 
     def __init__(
@@ -28,7 +29,9 @@ class Talk:
         perform: Perform,
         over: Coroutine[Any, Any, EndReason],
         vocabulary: Vocabulary = Vocabulary.ANSWER,
+        takes: Callable[[Command], bool] = lambda _: True,
     ) -> None:
+        self._takes = takes
         self._vocabulary = vocabulary
         self._conversation = conversation
         self._ears = ears
@@ -124,10 +127,10 @@ class Talk:
             await self._do(self._conversation.speech_began)
         elif report.kind == "utterance" and state is State.HEARING:
             if report.words:
+                taken = report.command is not None and self._takes(report.command)
+                command, phrase = (report.command, report.phrase) if taken else (None, None)
                 await self._do(
-                    lambda: self._conversation.utterance(
-                        report.command, report.phrase, report.latency_s
-                    )
+                    lambda: self._conversation.utterance(command, phrase, report.latency_s)
                 )
             else:
                 await self._do(self._conversation.nothing_said)

@@ -37,7 +37,7 @@ def test_it_is_placed_again_once_it_is_brought() -> None:
     conversation = about()
     [ask] = conversation.open()
     assert isinstance(ask, Ask)
-    assert ask.text == "The pink bar is not at its place. Shall I place it again?"
+    assert ask.text == "The pink bar is not at its place. Will you put it within my reach?"
     conversation.answer("yes")
     close = closing(conversation.help_seen(Change.APPEARED))
     assert (close.resolution, close.helped) == (Resolution.ROBOT_FINISH, True)
@@ -48,7 +48,7 @@ def test_what_is_seen_elsewhere_is_told_with_what_is_wrong() -> None:
     assert isinstance(ask, Ask)
     assert ask.text == (
         "The pink bar is not at its place. The pink bar was placed, but it stands 57 mm too low. "
-        "Shall I place it again?"
+        "Will you put it within my reach?"
     )
 
 

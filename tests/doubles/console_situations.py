@@ -50,6 +50,19 @@ async def open_question(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def question_queue(service: Service, open_page: OpenPage) -> Page:
+    """Two robots ask the same, and both stand in one entry that is open."""
+    page = await open_page("/")
+    await ask(service)
+    await ask(service)
+    batch = page.locator(".queue-batch summary")
+    await expect(batch).to_be_visible(timeout=PATIENCE_MS)
+    if await page.locator(".queue-batch[open]").count() == 0:
+        await batch.click()
+    await expect(page.get_by_role("button", name="Not now, all 2")).to_be_visible()
+    return page
+
+
 async def told_ending(service: Service, open_page: OpenPage) -> Page:
     """A question is gone because its run is, and the next one has its place."""
     page = await open_page("/")
@@ -350,6 +363,7 @@ SITUATIONS: dict[str, Situation] = {
     for each in (
         no_question,
         open_question,
+        question_queue,
         told_ending,
         waiting_for_help,
         no_runs,

@@ -15,13 +15,17 @@ from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal
 from mend.server.journal.run_index import RunPage
 from mend.server.runtime.leaf_words import understood
+from mend.server.runtime.question_queue import OpenQuestion, batches_of
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import (
     AwaitedHelp,
+    ChosenView,
     DialogueView,
     LeafSaid,
     NodeView,
     PromptView,
+    QuestionBatchView,
+    QuestionView,
     RobotView,
     RunResult,
     RunStatus,
@@ -59,6 +63,9 @@ class FakeWorlds:
         ]
 
 
+_IN_A_QUEUE = {"dialogue", "run", "robot", "name", "object", "claimed_by"}
+
+
 class FakeRuns:
     """A `RunService`; `raise_issue` does what a robot would."""
 
@@ -66,6 +73,8 @@ class FakeRuns:
         self._journal = journal
         self._runs: dict[UUID, RunView] = {}
         self._dialogues: dict[UUID, DialogueView] = {}
+        self.places: dict[UUID, str] = {}
+        """Where leaves belong that dialogues are about."""
         self._answers: dict[UUID, str] = {}
         self.photographed: list[tuple[str | None, str]] = []
         """Of which robot a picture was asked for, and from which camera."""
@@ -341,6 +350,60 @@ class FakeRuns:
         )
         assert isinstance(answered, ev.Answered)
         return answered
+
+    def questions(self) -> list[QuestionBatchView]:
+        return batches_of(self._open_questions())
+
+    async def choose_for_all(
+        self, way: str, prompts: Sequence[UUID], helper: str, author: ev.Author | None = None
+    ) -> list[ChosenView]:
+        open_ = {each.view.prompt: each.view.dialogue for each in self._open_questions()}
+        if any(prompt not in open_ for prompt in prompts):
+            raise NotFoundError("there is no such open question")
+        for prompt in prompts:
+            await self.dialogues.choose(open_[prompt], prompt, way, helper, author)
+        return [ChosenView(dialogue=open_[prompt], prompt=prompt) for prompt in prompts]
+
+    def _open_questions(self) -> list[OpenQuestion]:
+        return [
+            OpenQuestion(
+                QuestionView(
+                    **view.model_dump(include=_IN_A_QUEUE),
+                    tree="eket",
+                    place=self.places.get(view.dialogue),
+                    attempt=1,
+                    attempts=3,
+                    prompt=view.prompt.prompt,
+                    headline=view.prompt.headline or view.prompt.text,
+                    left_s=view.prompt.deadline,
+                    opened=datetime(2026, 1, 1, tzinfo=UTC),
+                    to=view.prompt.to,
+                ),
+                view.issue,
+                view.prompt.ways,
+                number,
+            )
+            for number, view in enumerate(self._dialogues.values())
+            if view.awaiting == "answer" and view.prompt is not None
+        ]
+
+    def offer_ways(self, dialogue: UUID, ways: list[ev.WayOption]) -> None:
+        """From now on the open question has these ways of help."""
+        prompt = self.dialogue_now(dialogue).prompt
+        assert prompt is not None, "nothing is asked"
+        self._change(dialogue, prompt=prompt.model_copy(update={"ways": ways}))
+
+    async def choose(
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        way: str,
+        helper: str,
+        author: ev.Author | None = None,
+    ) -> ev.Answered:
+        if way != "help":
+            raise ConflictError(f"'{way}' is no way to answer this question: there are help")
+        return await self.answer(dialogue, prompt, "yes", helper, author)
 
     async def extend(
         self, dialogue: UUID, prompt: UUID, helper: str, author: ev.Author | None = None

@@ -67,8 +67,11 @@ class PlayedDialogues(FakeRuns):
         self.to: str | None = None
         """Whom questions are put to, from now on."""
 
-    async def open(self, run: UUID, kind: str, part: str = "yellow_bar") -> UUID:
-        """A robot detects a fault of `kind`, with a picture and a clip; the dialogue's id."""
+    async def open(self, run: UUID, kind: str, part: str = "yellow_bar", **otherwise: Any) -> UUID:
+        """A robot detects a fault of `kind`, with a picture and a clip; the dialogue's id.
+
+        `otherwise`: what the event has of the issue other than the usual.
+        """
         pictures = [uuid4() for _ in range(4)]
         raised = ev.IssueRaised(
             **_stamp(run),
@@ -83,11 +86,13 @@ class PlayedDialogues(FakeRuns):
             interrupts=True,
             detection=DETECTION,
             picture=pictures[-1],
-        )
+        ).model_copy(update=otherwise)
         dialogue = uuid4()
         played = Played(raised, DialogueEvents(lambda: _stamp(run), dialogue, raised))
         self._played[dialogue] = played
         self._dialogues[dialogue] = _view(dialogue, raised)
+        if raised.place is not None:
+            self.places[dialogue] = raised.place
         clip = ev.ClipRecorded(
             **_stamp(run),
             **raised.model_dump(include={"node", "name", "robot", "issue", "execution"}),
@@ -112,15 +117,46 @@ class PlayedDialogues(FakeRuns):
         helper: str,
         author: ev.Author | None = None,
     ) -> ev.Answered:
+        asked = self._asked(dialogue, prompt)
+        return await self._take(dialogue, asked, answer, helper, author)
+
+    async def choose(
+        self,
+        dialogue: UUID,
+        prompt: UUID,
+        way: str,
+        helper: str,
+        author: ev.Author | None = None,
+    ) -> ev.Answered:
+        asked = self._asked(dialogue, prompt)
+        chosen = next((each for each in asked.ways if each.way == way), None)
+        if chosen is None:
+            raise ConflictError(f"'{way}' is no way to answer this question")
+        for answer in chosen.answers:
+            answered = await self._take(dialogue, asked, answer, helper, author)
+            asked = self._played[dialogue].asked or asked
+        return answered
+
+    def _asked(self, dialogue: UUID, prompt: UUID) -> ev.Prompt:
         self.dialogue_now(dialogue)
-        played = self._played[dialogue]
         if prompt in self._won:
             raise LostRaceError(prompt, self._won[prompt])
-        if played.asked is None or played.asked.prompt != prompt:
+        asked = self._played[dialogue].asked
+        if asked is None or asked.prompt != prompt:
             raise ConflictError("this prompt does not wait for an answer")
-        self._won[prompt] = helper
-        played.helper = helper
-        answered = played.make.answered(played.asked, answer, helper, author)
+        return asked
+
+    async def _take(
+        self,
+        dialogue: UUID,
+        asked: ev.Prompt,
+        answer: Literal["yes", "no"],
+        helper: str,
+        author: ev.Author | None,
+    ) -> ev.Answered:
+        played = self._played[dialogue]
+        self._won[asked.prompt] = played.helper = helper
+        answered = played.make.answered(asked, answer, helper, author)
         committed = await self._go_on(dialogue, answer, [answered])
         assert isinstance(committed[0], ev.Answered)
         return committed[0]
@@ -171,6 +207,13 @@ class PlayedDialogues(FakeRuns):
         assert isinstance(committed[0], ev.PromiseTakenBack)
         return committed[0]
 
+    async def came_of(self, dialogue: UUID) -> list[ev.Event]:
+        """All that was journaled since a dialogue was opened."""
+        events = await self._journal.read(0, 100_000, self._played[dialogue].raised.run)
+        opened = (each for each in events if isinstance(each, ev.DialogueOpened))
+        first = next(each.seq for each in opened if each.dialogue == dialogue)
+        return [each for each in events if each.seq >= first]
+
     async def picture(self, run: UUID, camera: str, robot: str | None = None) -> CameraPicture:
         await super().picture(run, camera, robot)
         return CameraPicture(_jpeg(2))
@@ -213,7 +256,9 @@ class PlayedDialogues(FakeRuns):
     ) -> Sequence[ev.Event]:
         played = self._played[dialogue]
         played.calls.append(call)
-        turns = rehearse(self._scripts[played.raised.issue], played.raised, played.calls, Outlook())
+        raised = played.raised
+        outlook = raised.outlook or Outlook()
+        turns = rehearse(self._scripts[raised.issue], raised, played.calls, outlook)
         events = played.make.of_turns(
             turns,
             ask_deadline=self._deadline(),

@@ -15,6 +15,7 @@ from pretend_robots import PretendRobot, PretendRobots
 from mend.dialogue.registry import load_scripts
 from mend.dialogue.script import Script
 from mend.errors import NotFoundError
+from mend.server.dialogues.attendance import Attendance
 from mend.server.dialogues.escalation import EscalationPolicy
 from mend.server.journal import events as ev
 from mend.server.journal.sqlite import SqliteJournal
@@ -120,6 +121,7 @@ async def pretend_service(
     scene: Scene = BARE,
     settings: RunSettings | None = None,
     sleep: Sleep = asyncio.sleep,
+    attendance: Attendance | None = None,
     **robot: Any,
 ) -> AsyncIterator[PretendService]:
     """A runtime whose robots run into `faults` (object -> issue and step, in turn)."""
@@ -148,6 +150,7 @@ async def pretend_service(
         monotonic=time.monotonic,
         utc_now=lambda: datetime.now(UTC),
         poses=PoseFeed(lambda *_: None, lambda _: None),
+        attendance=attendance,
     )
     try:
         await runtime.recover()

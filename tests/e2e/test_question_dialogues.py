@@ -112,10 +112,17 @@ async def expect_shown(page: Page, turns: list[Turn]) -> None:
     """The page shows what the robot says, and whether it asks, waits or is through."""
     for turn in turns:
         match turn:
-            case Ask(text=text, yes_effect=yes, no_effect=no):
+            case Ask(text=text, no_effect=no, ways=ways, headline=headline):
                 await expect(page.get_by_role("heading", name=text)).to_be_visible()
-                await expect(page.locator(".answer.yes")).to_contain_text(yes)
-                await expect(page.locator(".answer.no")).to_contain_text(no)
+                await expect(page.locator(".question-text")).to_have_text(headline)
+                await expect(page.locator(".spoken-question")).to_contain_text(no)
+                labels = [each.label for each in ways]
+                await expect(page.locator(".way-effects dt")).to_have_text(
+                    [*labels, "Without an answer"]
+                )
+                for each in ways:
+                    effect = page.locator(".way-effects dd").filter(has_text=each.effect)
+                    await expect(effect.first).to_be_visible()
             case Remark(text=text):
                 await expect(page.get_by_text(text).first).to_be_visible()
             case AwaitHelp():

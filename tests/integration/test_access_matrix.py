@@ -131,6 +131,7 @@ async def _is_refused(socket: Any, kind: str) -> bool:
 IDS = {"dialogue": str(uuid4()), "prompt": str(uuid4())}
 FIELDS: dict[str, dict[str, Any]] = {
     "answer": {**IDS, "answer": "yes"},
+    "choose": {**IDS, "way": "place"},
     "claim": {"dialogue": IDS["dialogue"]},
     "release": {"dialogue": IDS["dialogue"]},
     "extend": IDS,

@@ -12,6 +12,7 @@ from service_under_test import TOKEN, ServiceUnderTest, serving
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from mend.server.journal.events import WayOption
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import DialogueView
 from mend.server.speech.abilities import SpeechAbilities
@@ -82,7 +83,13 @@ async def test_a_yes_is_heard_and_ends_the_conversation(
             "audio": address,
         }
         heard = await say_something(socket)
-        assert heard == {"type": "heard", "command": "yes", "phrase": "yes", "latency_ms": 250.0}
+        assert heard == {
+            "type": "heard",
+            "command": "yes",
+            "phrase": "yes",
+            "latency_ms": 250.0,
+            "way": None,
+        }
         assert await receive(socket) == {"type": "ended", "reason": "heard"}
 
 
@@ -160,6 +167,44 @@ async def test_whoever_promised_help_says_that_it_is_done_or_cannot_be(
         assert (await say_something(socket))["command"] == command
         assert await receive(socket) == {"type": "ended", "reason": "heard"}
     assert [each.vocabulary for each in ears.opened] == [Vocabulary.PROMISE]
+
+
+WAYS = [
+    WayOption(way="put_back", deed="", label="", effect="", answers=["yes"]),
+    WayOption(way="place", deed="", label="", effect="", answers=["no", "yes"]),
+    WayOption(way="later", deed="", label="", effect="", answers=["no", "no"]),
+]
+
+
+@pytest.mark.parametrize(("command", "way"), [("place", "place"), ("not_now", "later")])
+async def test_a_way_of_help_is_chosen_by_the_words_for_it(
+    service: ServiceUnderTest, ears: ScriptedEars, question: DialogueView, command: str, way: str
+) -> None:
+    service.runs.offer_ways(question.dialogue, WAYS)
+    ears.hears.extend(["leave_out", command])
+    async with microphone(service) as socket:
+        await exchange(socket, listen(question))
+        not_there = await say_something(socket)
+        assert (not_there["command"], not_there["phrase"]) == (None, None)
+        assert (await receive(socket))["what"] == "sorry"
+        heard = await say_something(socket)
+        assert (heard["command"], heard["way"]) == (command, way)
+        assert await receive(socket) == {"type": "ended", "reason": "heard"}
+    assert [each.vocabulary for each in ears.opened] == [Vocabulary.WAYS]
+
+
+async def test_help_says_which_ways_can_be_chosen(
+    service: ServiceUnderTest, ears: ScriptedEars, question: DialogueView
+) -> None:
+    service.runs.offer_ways(question.dialogue, WAYS)
+    ears.hears.append("help")
+    async with microphone(service) as socket:
+        await exchange(socket, listen(question))
+        await say_something(socket)
+        said = await receive(socket)
+        assert said["text"].endswith(
+            "You can also say: I'll place it myself, not now, repeat, or stop."
+        )
 
 
 async def test_it_ends_when_somebody_else_answers(

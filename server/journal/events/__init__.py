@@ -26,6 +26,7 @@ from mend.server.journal.events.dialogue_events import (
     Released,
     Resolved,
     UnseenHelp,
+    WayOption,
 )
 from mend.server.journal.events.event import (
     NO_RUN,
@@ -186,5 +187,6 @@ __all__ = [
     "UnseenHelp",
     "UnseenPart",
     "WayFound",
+    "WayOption",
     "any_event",
 ]

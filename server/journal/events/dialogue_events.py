@@ -22,6 +22,22 @@ class AnswerOption(EventModel):
     final: bool = False
 
 
+class WayOption(EventModel):
+    """One way to answer a prompt and what follows a no to it, all at once.
+
+    `deed` is what the helper then does, and `label` the same below the prompt's headline.
+    `answers` are those that it stands for; without any yes nobody helps. `effect` and `final` as
+    of an answer.
+    """
+
+    way: str
+    deed: str
+    label: str
+    effect: str
+    answers: list[Literal["yes", "no"]]
+    final: bool = False
+
+
 class DialogueEvent(NodeEvent):
     """An event of one dialogue."""
 
@@ -43,7 +59,9 @@ class Prompt(DialogueEvent):
 
     `prompt` stays the same when a question is repeated; `version` counts up. `to` is the helper
     that it is meant for first, None for everyone. `deadline` is in the run's clock, and
-    `timeout_effect` says what follows if nobody answers until then.
+    `timeout_effect` says what follows if nobody answers until then. `headline` is what is asked of
+    the helper in few words, and `ways` are all that may be chosen; both are empty where a question
+    takes a yes or a no alone.
     """
 
     type: Literal["prompt"] = "prompt"
@@ -55,6 +73,8 @@ class Prompt(DialogueEvent):
     deadline: float | None = None
     timeout_effect: str = ""
     to: str | None = None
+    headline: str = ""
+    ways: list[WayOption] = []
 
 
 class FirstLook(DialogueEvent):

@@ -1,5 +1,7 @@
 """An unanswered ask climbs a ladder that ends."""
 
+from collections.abc import Sequence
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -11,17 +13,22 @@ from mend.server.dialogues.escalation import (
     Mail,
     Repeat,
     Rung,
+    Standing,
     ToHelper,
     first_helper,
     next_rung,
 )
 
 
-def rungs(policy: EscalationPolicy) -> list[Rung]:
+def rungs(policy: EscalationPolicy, idle: Sequence[str] = ()) -> list[Rung]:
     """Every rung, up to and with the one that says that nobody is left."""
     climbed: list[Rung] = []
+    asked: list[str | None] = [first_helper(policy)]
     while not climbed or climbed[-1] != Exhausted():
-        climbed.append(next_rung(policy, prompts=len(climbed) + 1))
+        mailed = any(isinstance(each, Mail) for each in climbed)
+        rung = next_rung(policy, Standing(tuple(asked), mailed), idle)
+        climbed.append(rung)
+        asked.append(rung.helper if isinstance(rung, Repeat | ToHelper) else asked[-1])
     return climbed
 
 
@@ -52,7 +59,40 @@ def test_without_named_helpers_everybody_is_asked_and_asked_again() -> None:
 
 def test_an_ask_that_was_never_put_cannot_be_escalated() -> None:
     with pytest.raises(ValueError, match="1 or more prompts"):
-        next_rung(EscalationPolicy(), prompts=0)
+        next_rung(EscalationPolicy(), Standing(()))
+
+
+def test_before_it_is_mailed_it_goes_to_whoever_is_signed_in_and_was_not_asked_last() -> None:
+    policy = EscalationPolicy(
+        helpers=("ana", "ben"), repeats=1, operators=("ops@example.org",), answer_within_s=30.0
+    )
+    assert rungs(policy, idle=["dan", "ben", "ana"]) == [
+        Repeat("ana", 30.0),
+        ToHelper("ben", 30.0),
+        ToHelper("dan", 30.0),
+        ToHelper("ana", 30.0),
+        Mail(("ops@example.org",), 600.0),
+        Exhausted(),
+    ]
+
+
+def test_who_signs_in_after_the_operators_were_written_to_is_called_all_the_same() -> None:
+    policy = EscalationPolicy(helpers=("ana",), repeats=0, operators=("ops@example.org",))
+    standing = Standing(("ana", "ana"), mailed=True)
+    assert next_rung(policy, standing) == Exhausted()
+    assert next_rung(policy, standing, ["dan"]) == ToHelper("dan", 60.0)
+
+
+def test_where_everybody_is_asked_nobody_is_called_once_more() -> None:
+    assert rungs(EscalationPolicy(), idle=["dan"]) == [Repeat(None, 60.0), Exhausted()]
+
+
+def test_what_a_robot_does_not_wait_for_is_asked_of_somebody_who_is_there() -> None:
+    policy = EscalationPolicy(helpers=("ana", "ben"))
+    assert first_helper(policy, ["dan", "ben"], waits=False) == "ben"
+    assert first_helper(policy, ["dan"], waits=False) == "dan"
+    assert first_helper(policy, [], waits=False) == "ana"
+    assert first_helper(policy, ["dan"]) == "ana"
 
 
 @given(
@@ -68,7 +108,7 @@ def test_every_ladder_ends_and_asks_every_helper(
     assert len(climbed) <= repeats + len(helpers) + len(operators) + 1
     asked = [first_helper(policy)] + [r.helper for r in climbed if isinstance(r, ToHelper)]
     assert asked == (list(policy.helpers) if helpers else [None])
-    assert next_rung(policy, prompts=len(climbed) + 1) == Exhausted()
+    assert climbed[-1] == Exhausted()
 
 
 @pytest.mark.parametrize("wrong", [{"repeats": -1}, {"answer_within_s": 0}, {"helper": "ana"}])

@@ -63,8 +63,8 @@ async def test_a_robot_that_is_wrong_finds_out_and_the_operators_hear_of_it_once
     assert alarm.told == ["ops@example.org"]
     asked = [each for each in said(events) if each.endswith("?")]
     assert asked == [
-        "I missed the part 1. Shall I try again?",
-        "I missed the part 1. Shall I try again?",
+        "I missed the part 1. Will you put it back on the table?",
+        "I missed the part 1. Will you put it back on the table?",
         "I have now failed three times to pick up the part 1. Will you place the part 1 yourself?",
     ]
 

@@ -63,6 +63,18 @@ def test_what_is_said_of_a_promise_is_no_answer_and_the_other_way_round() -> Non
     assert {Command.DONE, Command.CANNOT}.isdisjoint(phrase_commands().values())
 
 
+def test_ways_of_help_are_chosen_only_where_there_are_some() -> None:
+    assert command_in("c_i'll_place_it_myself", Vocabulary.WAYS) == (
+        Command.PLACE,
+        "i'll place it myself",
+    )
+    assert command_in("c_not_now", Vocabulary.WAYS) == (Command.NOT_NOW, "not now")
+    assert command_in("c_not_now") == (Command.NO, "not now")
+    assert {Command.PLACE, Command.LEAVE_OUT, Command.NOT_NOW}.isdisjoint(
+        phrase_commands().values()
+    )
+
+
 @pytest.mark.parametrize(
     ("hypothesis", "heard"),
     [

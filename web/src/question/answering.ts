@@ -1,5 +1,5 @@
-// Giving an answer: at once, or, where it cannot be taken back otherwise, after three seconds in
-// which it can be undone. Buttons, keys and speech all come through here.
+// Giving an answer, or choosing a way of help: at once, or, where it cannot be taken back otherwise,
+// after three seconds in which it can be undone. Buttons, keys and speech all come through here.
 import { effect, signal } from "@preact/signals";
 import { may } from "../state/access";
 import { tellEnding } from "../state/endings";
@@ -12,11 +12,16 @@ export type Answer = "yes" | "no";
 
 export const UNDO_MS = 3_000;
 
-/** An answer that has not been sent yet. */
+/** What somebody replies to a question: yes or no to it, or one of its ways, which stands for several. */
+type Reply = { answer: Answer } | { way: string };
+
+/** A reply that has not been sent yet. */
 export interface Held {
   question: Question;
   prompt: string;
-  answer: Answer;
+  reply: Reply;
+  /** As it stands on its button. */
+  said: string;
   effect: string;
 }
 
@@ -30,49 +35,69 @@ let timer = 0;
 
 /** Answer the open question of a dialogue. */
 export function answer(question: Question, value: Answer): void {
+  const option = question.prompt?.answers.find((each) => each.value === value);
+  if (option !== undefined) give(question, { answer: value }, value.toUpperCase(), option);
+}
+
+/** Choose one of the ways to answer the open question of a dialogue. */
+export function choose(question: Question, way: string): void {
+  const option = question.prompt?.ways.find((each) => each.way === way);
+  if (option !== undefined) give(question, { way }, `“${option.label}”`, option);
+}
+
+/** Whether this is the reply that is being held. */
+export function isHeld(prompt: string, said: string): boolean {
+  return held.value?.prompt === prompt && held.value.said === said;
+}
+
+function give(question: Question, reply: Reply, said: string, option: { effect: string; final: boolean }): void {
   const { prompt } = question;
   if (!may("helper")) return;
   if (prompt === null || question.awaiting !== "answer" || given.value.has(prompt.prompt)) return;
-  if (held.value?.prompt === prompt.prompt && held.value.answer === value) return;
-  const option = prompt.answers.find((each) => each.value === value);
-  if (option === undefined) return;
+  if (isHeld(prompt.prompt, said)) return;
   if (held.value?.prompt === prompt.prompt) undo();
   else sendHeld();
   note(prompt.prompt, null);
+  const waiting = { question, prompt: prompt.prompt, reply, said, effect: option.effect };
   if (!option.final) {
-    void send(question, prompt.prompt, value);
+    void send(waiting);
     return;
   }
-  held.value = { question, prompt: prompt.prompt, answer: value, effect: option.effect };
+  held.value = waiting;
   timer = window.setTimeout(sendHeld, UNDO_MS);
 }
 
-/** Take back the answer that is being held. */
+/** Take back the reply that is being held. */
 export function undo(): void {
   window.clearTimeout(timer);
   held.value = null;
 }
 
-/** Send the answer that is being held, without waiting longer. */
+/** Send the reply that is being held, without waiting longer. */
 export function sendHeld(): void {
   const waiting = held.value;
   undo();
-  if (waiting !== null) void send(waiting.question, waiting.prompt, waiting.answer);
+  if (waiting !== null) void send(waiting);
 }
 
-async function send(question: Question, prompt: string, value: Answer): Promise<void> {
+async function send({ question, prompt, reply, said }: Held): Promise<void> {
+  const { dialogue } = question;
   given.value = new Set([...given.value, prompt]);
   try {
-    await command({ type: "answer", dialogue: question.dialogue, prompt, answer: value });
+    await command(
+      "way" in reply
+        ? { type: "choose", dialogue, prompt, way: reply.way }
+        : { type: "answer", dialogue, prompt, answer: reply.answer },
+    );
   } catch (error) {
     given.value = new Set([...given.value].filter((each) => each !== prompt));
     const faster = error instanceof Refusal ? error.answeredBy : null;
     if (faster === null) {
-      note(prompt, `Your ${value.toUpperCase()} was not sent: ${(error as Error).message}`);
+      note(prompt, `Your ${said} was not sent: ${(error as Error).message}`);
     } else if (faster === helperName.value) {
-      note(prompt, `Your ${value.toUpperCase()} does not count: you have answered this already.`);
+      note(prompt, `Your ${said} does not count: you have answered this already.`);
     } else {
-      tellEnding(question, `${faster} was faster; your ${value.toUpperCase()} does not count.`);
+      tellEnding(question, `${faster} was faster; your ${said} does not count.`);
     }
   }
 }
@@ -93,12 +118,12 @@ effect(() => {
   const by = now?.answered_by ?? null;
   undo();
   const why = by === null ? "the question was closed first" : `${by} answered first`;
-  tellEnding(waiting.question, `Your ${waiting.answer.toUpperCase()} was not sent: ${why}.`);
+  tellEnding(waiting.question, `Your ${waiting.said} was not sent: ${why}.`);
 });
 
 window.addEventListener("pagehide", () => {
   const waiting = held.value;
   undo();
   if (waiting === null) return;
-  answerWhileLeaving(waiting.question.dialogue, waiting.prompt, waiting.answer, helperName.value);
+  answerWhileLeaving(waiting.question.dialogue, waiting.prompt, waiting.reply, helperName.value);
 });

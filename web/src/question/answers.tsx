@@ -1,13 +1,14 @@
-// The two answers, large, each with what it will do; and the one that is held back for a moment.
-import { may, whyNot } from "../state/access";
+// The two answers, large, each with what it will do: for a question that has no ways of help.
 import { keys, keysOn } from "../state/preferences";
 import type { Question } from "../state/questions";
-import { connection } from "../state/service";
-import { type Answer, given, held, mistakes, undo } from "./answering";
+import { type Answer, isHeld } from "./answering";
+import { AnsweringNote } from "./answering_note";
 import type { Arming } from "./arming";
+import { HeldBack } from "./held_back";
+import { takesAnswers } from "./takes_answers";
 import "./answers.css";
 
-const WORDS = { yes: "YES", no: "NO" } as const;
+export const WORDS = { yes: "YES", no: "NO" } as const;
 
 interface AnswersProps {
   question: Question;
@@ -15,15 +16,10 @@ interface AnswersProps {
   onAnswer(value: Answer): void;
 }
 
-export function Answers({ question, arming: { armed, tooEarly }, onAnswer }: AnswersProps) {
+export function Answers({ question, arming, onAnswer }: AnswersProps) {
   const { prompt } = question;
   if (prompt === null) return null;
-  const waiting = held.value?.prompt === prompt.prompt ? held.value : null;
-  const busy = given.value.has(prompt.prompt) || question.awaiting !== "answer";
-  const offline = connection.value !== "connected";
-  const allowed = may("helper");
-  const closed = !armed || busy || offline || !allowed;
-  const mistake = mistakes.value.get(prompt.prompt);
+  const closed = !takesAnswers(question, arming);
   return (
     <div class="answering">
       <div class="answers" role="group" aria-label="Your answer">
@@ -31,41 +27,28 @@ export function Answers({ question, arming: { armed, tooEarly }, onAnswer }: Ans
           <button
             key={value}
             type="button"
-            class={`answer ${value} ${waiting?.answer === value ? "held" : ""}`}
+            class={`answer large ${value} ${isHeld(prompt.prompt, WORDS[value]) ? "held" : ""}`}
             aria-disabled={closed}
             aria-keyshortcuts={keysOn.value ? keys.value[value] : undefined}
             onClick={() => onAnswer(value)}
           >
             <span class="answer-word">
               {WORDS[value]}
-              {keysOn.value && keys.value[value] !== "" && (
-                <kbd aria-hidden="true">{keys.value[value].toUpperCase()}</kbd>
-              )}
+              <AnswerKey value={value} />
             </span>
             <span class="answer-effect">{effect}</span>
           </button>
         ))}
-        {waiting !== null && (
-          <div class="held-back">
-            <p>
-              <strong>{WORDS[waiting.answer]}</strong> is sent in a moment
-            </p>
-            <button type="button" class="button" onClick={undo}>
-              Undo <kbd aria-hidden="true">Esc</kbd>
-            </button>
-            <span class="held-progress" aria-hidden="true" />
-          </div>
-        )}
+        <HeldBack prompt={prompt.prompt} />
       </div>
       {prompt.timeout_effect !== "" && <p class="answer-timeout">Without an answer: {prompt.timeout_effect}</p>}
-      <p class="answering-note" role="status">
-        {waiting !== null && <span class="unseen">Your {WORDS[waiting.answer]} is sent in 3 seconds. Escape takes it back.</span>}
-        {!allowed && whyNot("Answering", "helper")}
-        {offline && "No connection to the service. You can answer as soon as it is back."}
-        {mistake !== undefined && <span class="mistake">{mistake}</span>}
-        {busy && !offline && "Sent."}
-        {tooEarly && !busy && !offline && allowed && <strong>This question has only just come. Read it, then answer again.</strong>}
-      </p>
+      <AnsweringNote question={question} arming={arming} />
     </div>
   );
+}
+
+/** The key that gives this answer, where there is one. */
+export function AnswerKey({ value }: { value: Answer }) {
+  if (!keysOn.value || keys.value[value] === "") return null;
+  return <kbd aria-hidden="true">{keys.value[value].toUpperCase()}</kbd>;
 }

@@ -12,15 +12,8 @@ const WARN_S = 25;
 
 export function Countdown({ question }: { question: Question }) {
   const left = useSecondsLeft(question);
-  const [mistake, setMistake] = useState("");
   const { prompt } = question;
   if (left === null || prompt === null) return null;
-  const more = () => {
-    setMistake("");
-    command({ type: "extend", dialogue: question.dialogue, prompt: prompt.prompt }).catch((error: Error) =>
-      setMistake(error.message),
-    );
-  };
   const late = left <= WARN_S;
   return (
     <div class={`countdown ${late ? "late" : ""}`}>
@@ -28,11 +21,26 @@ export function Countdown({ question }: { question: Question }) {
       <p class="unseen" role="status">
         {late && left > 0 ? "Less than 25 seconds are left to answer. You can ask for more time." : ""}
       </p>
-      {prompt.extensions_left > 0 && may("helper") && (
-        <button type="button" class="button" onClick={more}>
-          More time
-        </button>
-      )}
+    </div>
+  );
+}
+
+/** Lets whoever cannot be in time have the robot wait for longer. */
+export function MoreTime({ question }: { question: Question }) {
+  const [mistake, setMistake] = useState("");
+  const { prompt } = question;
+  if (prompt === null || prompt.deadline === null || prompt.extensions_left === 0 || !may("helper")) return null;
+  const more = () => {
+    setMistake("");
+    command({ type: "extend", dialogue: question.dialogue, prompt: prompt.prompt }).catch((error: Error) =>
+      setMistake(error.message),
+    );
+  };
+  return (
+    <div class="more-time">
+      <button type="button" class="button" onClick={more}>
+        More time
+      </button>
       {mistake !== "" && (
         <p class="mistake small" role="status">
           {mistake}

@@ -1,19 +1,21 @@
-// One question: what went wrong, what the robot saw, and the two answers with what each will do.
+// One question: what there is to do, every way of it as a button, and beneath what each does and why it is asked.
 import { useEffect } from "preact/hooks";
 import type { Question } from "../state/questions";
 import { connection, runs } from "../state/service";
-import { type Answer, answer } from "./answering";
+import { type Answer, answer, choose } from "./answering";
 import { Answers } from "./answers";
 import { useAnswerKeys } from "./answer_keys";
 import { useArming } from "./arming";
 import { AskingPlace } from "./asking_place";
 import { ClaimStrip } from "./claim_strip";
 import { actOn, release } from "./claiming";
-import { Countdown } from "./countdown";
+import { Countdown, MoreTime } from "./countdown";
 import { WhatWasSeen } from "./fault_picture";
 import { faultInWords, robotName, spoken } from "./fault_words";
 import { PausedNode } from "./paused_node";
 import { SpeechControls } from "./speech_controls";
+import { SpokenQuestion } from "./spoken_question";
+import { WayEffects, Ways } from "./ways";
 import "./question_card.css";
 
 interface QuestionCardProps {
@@ -25,45 +27,54 @@ interface QuestionCardProps {
 export function QuestionCard({ question, besideTree = false }: QuestionCardProps) {
   const { prompt } = question;
   const arming = useArming(prompt?.prompt ?? null);
-  const give = (value: Answer) => {
+  const whenArmed = (reply: () => void) => {
     if (connection.peek() !== "connected") return;
-    if (arming.armed) answer(question, value);
+    if (arming.armed) reply();
     else arming.noteTooEarly();
   };
-  useAnswerKeys(question, give);
+  const give = (value: Answer) => whenArmed(() => answer(question, value));
+  const chooseWay = (way: string) => whenArmed(() => choose(question, way));
+  useAnswerKeys(question, give, chooseWay);
   useEffect(() => () => release(question.dialogue), [question.dialogue]);
   if (prompt === null) return null;
   const act = () => actOn(question);
   const run = runs.value.get(question.run);
   const titled = `question-${question.dialogue}`;
+  const withWays = prompt.ways.length > 0;
   return (
-    <article class="question panel" aria-labelledby={titled}>
+    <article class={`question panel ${withWays ? "with-ways" : ""}`} aria-labelledby={titled}>
       <header class="question-head">
         <p class="question-about">
           <strong>{robotName(question.robot)}</strong>
-          {run !== undefined && <a href={`/runs/${question.run}`}>{spoken(run.tree)}</a>}
-          <span class="quiet">at “{spoken(question.name)}”</span>
         </p>
         <Countdown question={question} />
       </header>
-      <div class="question-words">
-        <p class="question-fault">{faultInWords(question)}</p>
-        <h2 id={titled} class="question-text">
-          {prompt.text}
-        </h2>
-        {prompt.version > 1 && <p class="quiet small">Asked for the {ordinal(prompt.version)} time.</p>}
+      <h2 id={titled} class="question-text">
+        {withWays ? prompt.headline : prompt.text}
+      </h2>
+      <div class="question-answers" onPointerMove={act} onPointerDown={act} onFocusCapture={act}>
+        {withWays ? (
+          <Ways question={question} arming={arming} onChoose={chooseWay} />
+        ) : (
+          <Answers question={question} arming={arming} onAnswer={give} />
+        )}
       </div>
       <div class="question-body">
         <div class="question-seen" onPointerDown={act} onKeyDown={act}>
           <WhatWasSeen question={question} />
+          <p class="question-fault">{faultInWords(question)}</p>
           <AskingPlace question={question} />
         </div>
-        <div class="question-answers" onPointerMove={act} onPointerDown={act} onFocusCapture={act}>
-          <Answers question={question} arming={arming} onAnswer={give} />
-        </div>
         <div class="question-more">
+          {withWays && <WayEffects question={question} />}
+          <MoreTime question={question} />
+          {withWays && <SpokenQuestion question={question} arming={arming} onAct={act} onAnswer={give} />}
+          {prompt.version > 1 && <p class="quiet small">Asked for the {ordinal(prompt.version)} time.</p>}
           <SpeechControls question={question} onAct={act} />
           <ClaimStrip question={question} />
+          <p class="question-about quiet">
+            {run !== undefined && <a href={`/runs/${question.run}`}>{spoken(run.tree)}</a>} at “{spoken(question.name)}”
+          </p>
           {!besideTree && <PausedNode run={question.run} node={question.node} name={question.name} />}
         </div>
       </div>

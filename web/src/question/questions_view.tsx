@@ -4,10 +4,13 @@ import { awaitingHelp, together } from "../state/questions";
 import { Endings } from "./endings_list";
 import { QuestionCard } from "./question_card";
 import { queue, shown, stopChoosing } from "./queue";
-import { QueueList } from "./queue_list";
+import { later } from "../app/later";
 import { AwaitedHelpCard, TogetherCard } from "./waiting_cards";
 import { AtAGlance } from "./at_a_glance";
 import "./questions_view.css";
+
+// Whoever has one question before them needs no list.
+const QueueList = later(() => import("./queue_list").then((module) => module.QueueList));
 
 export function QuestionsView() {
   useEffect(() => stopChoosing, []);

@@ -1,34 +1,28 @@
-// The open questions at a glance, in the order in which they are asked.
+// The open questions at a glance, the most urgent first; those that may be answered alike are one entry.
+import { may } from "../state/access";
 import { helperName } from "../state/preferences";
-import type { Question } from "../state/questions";
-import { runs } from "../state/service";
+import { dialogueOf, type Question } from "../state/questions";
+import type { QuestionBatchView, QuestionView } from "../wire/types";
 import { clock, useSecondsLeft } from "./countdown";
 import { faultInWords, robotName, spoken } from "./fault_words";
+import { ForAll } from "./for_all";
 import { choose, queue } from "./queue";
-import { askedNow } from "./turn";
+import { useBatches } from "./use_batches";
 import "./queue_list.css";
 
 export function QueueList({ shown }: { shown: Question | null }) {
+  const batches = useBatches();
   return (
     <section aria-labelledby="queue-title" class="queue">
       <h2 id="queue-title">{queue.value.length} questions</h2>
       <ol>
-        {queue.value.map((each) => (
-          <li key={each.dialogue}>
-            <button
-              type="button"
-              class="queue-item"
-              aria-current={each.dialogue === shown?.dialogue ? "true" : undefined}
-              onClick={() => choose(each.dialogue)}
-            >
-              <span class="queue-robot">
-                {robotName(each.robot)}
-                <Task run={each.run} />
-                <Left question={each} />
-              </span>
-              <span>{faultInWords(each)}</span>
-              <Taken by={each.claimed_by} asked={askedNow(each)} />
-            </button>
+        {batches.map((batch) => (
+          <li key={batch.questions[0]?.prompt}>
+            {batch.questions.length > 1 ? (
+              <Batch batch={batch} shown={shown} />
+            ) : (
+              batch.questions.map((each) => <Entry key={each.prompt} entry={each} shown={shown} />)
+            )}
           </li>
         ))}
       </ol>
@@ -36,12 +30,56 @@ export function QueueList({ shown }: { shown: Question | null }) {
   );
 }
 
-function Task({ run }: { run: string }) {
-  const tree = runs.value.get(run)?.tree;
-  return tree === undefined ? null : <span class="queue-task">{spoken(tree)}</span>;
+function Batch({ batch, shown }: { batch: QuestionBatchView; shown: Question | null }) {
+  const { questions, headline, at_once } = batch;
+  return (
+    <details class="queue-batch" open={questions.some((each) => each.dialogue === shown?.dialogue)}>
+      <summary>
+        <b>{questions.length}×</b> {headline}
+        <Left dialogue={questions[0]?.dialogue} />
+      </summary>
+      <ol>
+        {questions.map((each) => (
+          <li key={each.prompt}>
+            <Entry entry={each} shown={shown} />
+          </li>
+        ))}
+      </ol>
+      {may("helper") && at_once.length > 0 && <ForAll ways={at_once} prompts={questions.map((each) => each.prompt)} />}
+    </details>
+  );
 }
 
-function Left({ question }: { question: Question }) {
+function Entry({ entry, shown }: { entry: QuestionView; shown: Question | null }) {
+  const question = dialogueOf(entry.dialogue);
+  if (question === undefined) return null;
+  return (
+    <button
+      type="button"
+      class="queue-item"
+      aria-current={entry.dialogue === shown?.dialogue ? "true" : undefined}
+      onClick={() => choose(entry.dialogue)}
+    >
+      <span class="queue-robot">
+        {robotName(entry.robot)}
+        <span class="queue-task">{spoken(entry.tree)}</span>
+        <Left dialogue={entry.dialogue} />
+      </span>
+      <span>{faultInWords(question)}</span>
+      <span class="queue-where">
+        {entry.place !== null && `To ${spoken(entry.place)}. `}Attempt {entry.attempt} of {entry.attempts}
+      </span>
+      <Taken by={entry.claimed_by} asked={entry.to} />
+    </button>
+  );
+}
+
+function Left({ dialogue }: { dialogue: string | undefined }) {
+  const question = dialogue === undefined ? undefined : dialogueOf(dialogue);
+  return question === undefined ? null : <Clock question={question} />;
+}
+
+function Clock({ question }: { question: Question }) {
   const left = useSecondsLeft(question);
   if (left === null) return null;
   return (

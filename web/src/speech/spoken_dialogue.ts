@@ -1,6 +1,6 @@
 // The spoken side of the question that is shown: says it, listens, and answers as a click would.
 import { effect, untracked } from "@preact/signals";
-import { answer, held } from "../question/answering";
+import { answer, choose, held } from "../question/answering";
 import { actOn } from "../question/claiming";
 import { say as sayOfHelp } from "../question/promise";
 import { shown } from "../question/queue";
@@ -149,7 +149,8 @@ class SpokenDialogue {
     const address = soundOf(waiting.question);
     untracked(() => {
       this.#socket?.send({ type: "cancel" });
-      void this.#say(waiting.effect, address === null ? null : `${address}/${waiting.answer}`);
+      const { reply } = waiting;
+      void this.#say(waiting.effect, address === null || "way" in reply ? null : `${address}/${reply.answer}`);
     });
   }
 
@@ -177,7 +178,7 @@ class SpokenDialogue {
         return;
       case "heard":
         lastHeard.value = { phrase: message.phrase };
-        this.#take(message.command);
+        this.#take(message.command, message.way);
         return;
       case "gave_up":
         speechPhase.value = "gave_up";
@@ -201,13 +202,14 @@ class SpokenDialogue {
   }
 
   /** Act on a command as the same button would. */
-  #take(command: Extract<ToSpeaker, { type: "heard" }>["command"]): void {
+  #take(command: Extract<ToSpeaker, { type: "heard" }>["command"], way: string | null): void {
     const question = this.#asked === null ? undefined : dialogueOf(this.#asked.dialogue);
     if (question === undefined || command === null) return;
     if (command === "done") sayOfHelp(question, "done");
     if (command === "cannot") sayOfHelp(question, "take_back");
     if (question.awaiting === "answer") actOn(question);
-    if (command === "yes" || command === "no") answer(question, command);
+    if (way !== null) choose(question, way);
+    else if (command === "yes" || command === "no") answer(question, command);
     if (command === "stop") {
       rest.pauseRun(question.run).then(
         () => tellEnding(question, "You said stop: the run is paused."),

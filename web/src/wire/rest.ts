@@ -2,6 +2,7 @@
 import type {
   Answered,
   AskedRobotView,
+  ChosenView,
   Detection,
   DialogueView,
   Event,
@@ -12,6 +13,7 @@ import type {
   LeafSaid,
   Problem as ProblemDocument,
   PushView,
+  QuestionBatchView,
   RequestView,
   RobotView,
   RunRequest,
@@ -160,15 +162,25 @@ export async function beginning(id: string): Promise<RunStarted | null> {
 
 export const dialogue = (id: string) =>
   call<DialogueView>("GET", `/api/dialogues/${segment(id)}`);
+/** The open questions of all runs, the most urgent first; those that may be answered alike together. */
+export const questionBatches = () => call<QuestionBatchView[]>("GET", "/api/questions");
+/** Choose a way for several questions at once. */
+export const chooseForAll = (way: string, prompts: string[], helper: string) =>
+  call<ChosenView[]>("POST", "/api/questions/choices", { way, prompts, helper });
 export const answer = (id: string, prompt: string, value: "yes" | "no", helper: string) =>
   call<Answered>("POST", `/api/dialogues/${segment(id)}/answers`, { prompt, answer: value, helper });
 
 /** Answer from a page that is being left: nobody is there any more to hear the result. */
-export function answerWhileLeaving(id: string, prompt: string, value: "yes" | "no", helper: string): void {
-  void fetch(`/api/dialogues/${segment(id)}/answers`, {
+export function answerWhileLeaving(
+  id: string,
+  prompt: string,
+  reply: { answer: "yes" | "no" } | { way: string },
+  helper: string,
+): void {
+  void fetch(`/api/dialogues/${segment(id)}/${"way" in reply ? "choices" : "answers"}`, {
     method: "POST",
     headers: { "Content-Type": JSON_TYPE },
-    body: JSON.stringify({ prompt, answer: value, helper }),
+    body: JSON.stringify({ prompt, ...reply, helper }),
     keepalive: true,
   });
 }

@@ -1,0 +1,72 @@
+"""No question expires unseen while somebody is signed in to help and on nothing."""
+
+from contextlib import ExitStack
+
+from answer_races import ONE_PART
+from pretend_service import pretend_service
+
+from mend.server.dialogues.attendance import Attendance
+from mend.server.dialogues.escalation import EscalationPolicy
+from mend.server.journal import events as ev
+
+FAULT = {"part_1": [("missed", 4)]}
+ANN_ALONE = EscalationPolicy(helpers=("ann",), repeats=1, operators=("ops@example.org",))
+
+
+async def asked_one_after_the_other(*attending: str, policy: EscalationPolicy) -> list[str | None]:
+    """Whom the first question was put to until it expired; "mail" for the operators."""
+    attendance = Attendance()
+    with ExitStack() as there:
+        for helper in attending:
+            there.enter_context(attendance.attending(helper))
+        async with pretend_service(
+            ONE_PART, FAULT, policy=policy, attendance=attendance
+        ) as service:
+            _, events = await service.run_to_end(answers="none", max_attempts=1)
+    asked: list[str | None] = []
+    for event in events:
+        match event:
+            case ev.Escalated(channel="mail"):
+                asked.append("mail")
+            case ev.Prompt(kind="ask", to=to) if not asked or asked[-1] != "mail":
+                asked.append(to)
+    return asked
+
+
+async def test_a_question_goes_on_to_whoever_is_there_before_it_is_given_up() -> None:
+    assert await asked_one_after_the_other("dan", "eve", policy=ANN_ALONE) == [
+        "ann",
+        "ann",
+        "dan",
+        "eve",
+        "mail",
+    ]
+
+
+async def test_where_nobody_is_there_the_ladder_is_what_the_policy_says() -> None:
+    assert await asked_one_after_the_other(policy=ANN_ALONE) == ["ann", "ann", "mail"]
+
+
+async def test_whoever_was_asked_last_is_not_asked_once_more() -> None:
+    assert await asked_one_after_the_other("ann", policy=ANN_ALONE) == ["ann", "ann", "mail"]
+
+
+async def test_each_question_says_whom_the_robot_asks_next() -> None:
+    attendance = Attendance()
+    with attendance.attending("dan"):
+        async with pretend_service(
+            ONE_PART, FAULT, policy=ANN_ALONE, attendance=attendance
+        ) as service:
+            _, events = await service.run_to_end(answers="none", max_attempts=1)
+    asks = [each for each in events if isinstance(each, ev.Prompt) and each.kind == "ask"]
+    said = [each.timeout_effect.split("; if nobody")[0] for each in asks[:4]]
+    assert said[:3] == ["I ask again", "I ask dan", "I write to the operators"]
+
+
+def test_somebody_with_two_devices_is_there_until_both_are_gone() -> None:
+    attendance = Attendance()
+    with attendance.attending("ann"):
+        with attendance.attending("ann"):
+            assert attendance.idle([]) == ["ann"]
+        assert attendance.idle([]) == ["ann"]
+    assert attendance.idle([]) == []

@@ -1,0 +1,26 @@
+// What became of a reply, or why there can be none now.
+import { may, whyNot } from "../state/access";
+import type { Question } from "../state/questions";
+import { connection } from "../state/service";
+import { held, mistakes } from "./answering";
+import type { Arming } from "./arming";
+import { isAnswered } from "./takes_answers";
+
+export function AnsweringNote({ question, arming: { tooEarly } }: { question: Question; arming: Arming }) {
+  const prompt = question.prompt?.prompt ?? "";
+  const waiting = held.value?.prompt === prompt ? held.value : null;
+  const busy = isAnswered(question);
+  const offline = connection.value !== "connected";
+  const allowed = may("helper");
+  const mistake = mistakes.value.get(prompt);
+  return (
+    <p class="answering-note" role="status">
+      {waiting !== null && <span class="unseen">Your {waiting.said} is sent in 3 seconds. Escape takes it back.</span>}
+      {!allowed && whyNot("Answering", "helper")}
+      {offline && "No connection to the service. You can answer as soon as it is back."}
+      {mistake !== undefined && <span class="mistake">{mistake}</span>}
+      {busy && !offline && "Sent."}
+      {tooEarly && !busy && !offline && allowed && <strong>This question has only just come. Read it, then answer again.</strong>}
+    </p>
+  );
+}

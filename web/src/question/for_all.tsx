@@ -1,0 +1,42 @@
+// One press for several questions, where that is safe; held back for a moment, as it cannot be taken back.
+import { useEffect, useState } from "preact/hooks";
+import { helperName } from "../state/preferences";
+import * as rest from "../wire/rest";
+import type { BatchWayView } from "../wire/types";
+import { UNDO_MS } from "./answering";
+
+export function ForAll({ ways, prompts }: { ways: readonly BatchWayView[]; prompts: readonly string[] }) {
+  const [chosen, setChosen] = useState<BatchWayView | null>(null);
+  const [mistake, setMistake] = useState("");
+  const all = prompts.join(" ");
+  useEffect(() => {
+    if (chosen === null) return;
+    const timer = window.setTimeout(() => {
+      setChosen(null);
+      rest.chooseForAll(chosen.way, all.split(" "), helperName.value).then(
+        (became) => setMistake(became.map(({ refused }) => refused ?? "").filter((each) => each !== "").join(" ")),
+        (error: Error) => setMistake(error.message),
+      );
+    }, UNDO_MS);
+    return () => window.clearTimeout(timer);
+  }, [chosen, all]);
+  return (
+    <div class="for-all" role="group" aria-label={`All ${prompts.length} at once`}>
+      {chosen === null &&
+        ways.map((each) => (
+          <button key={each.way} type="button" class="button" onClick={() => setChosen(each)}>
+            {each.label}, all {prompts.length}
+          </button>
+        ))}
+      {chosen !== null && (
+        <button type="button" class="button" onClick={() => setChosen(null)}>
+          Undo
+        </button>
+      )}
+      <p class="small" role="status">
+        {chosen !== null && `“${chosen.label}” is sent for all ${prompts.length} in a moment.`}
+        {mistake !== "" && <span class="mistake">{mistake}</span>}
+      </p>
+    </div>
+  );
+}
