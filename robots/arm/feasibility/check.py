@@ -1,10 +1,11 @@
 """The check of a whole scene: each part by itself, and what gets in each other's way."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, product
 
+from mend.robots.arm.behaviors.grasp_choice import Crowding
 from mend.robots.arm.behaviors.planning import Planner
 from mend.robots.arm.feasibility.burdens import Burdens
 from mend.robots.arm.feasibility.doing import ArmCheck, Hindrance
@@ -254,8 +255,25 @@ class _RobotCheck:
         if (problem := hidden(job.start, sure, self._head.eye, moved)) is not None:
             return problem
         if (hindrance := self._hindrance(job, moments)) is not None:
-            return self._arm.told(hindrance, moved)
+            return self._with_order(self._arm.told(hindrance, moved), hindrance, job, moments)
         return out_of_picture(job, self._head, self._scatter)
+
+    def _with_order(
+        self, problem: SceneProblem, hindrance: Hindrance, job: Job, moments: Moments
+    ) -> SceneProblem:
+        """What is told of too little room, and which THEN would do as well, if one would."""
+        if isinstance(problem, StrewnPart) or not isinstance(hindrance.barred.reason, Crowding):
+            return problem
+        sure, maybe = moments.around(moments.of(job))
+        for each in maybe:
+            others = [other for other in (*sure, *maybe) if other is not each]
+            in_the_way = each.name in hindrance.names
+            if in_the_way and self._arm.hindrance(job.start, job.place, others) is None:
+                taken_away = each.where[0] == "objects"
+                first, later = (each, job) if taken_away else (job, each)
+                order = f"or put '{first.name}' before '{later.name}' in a THEN"
+                return replace(problem, message=f"{problem.message}, {order}")
+        return problem
 
     def _hindrance(self, job: Job, moments: Moments) -> Hindrance | None:
         """What keeps the arm from a job at a moment that the order allows; None if nothing does."""

@@ -555,3 +555,20 @@ def test_by_itself_a_scene_may_have_a_place_on_what_a_task_brings_to_another_pla
     too_high = {**places, "lintel": Pose(x=0.5, y=0.03, z=0.79)}
     told = {each.where: each.message for each in problems_of(scene(parts, **too_high))}
     assert "the nearest top there is that of pillar_" in told["places", "lintel", "pose"]
+
+
+def test_where_the_order_is_open_the_then_that_would_do_is_told() -> None:
+    made = scene(
+        {"one": box(0.5, -0.5), "two": wall(0.5, -0.3)}, left=Pose(x=0.5, y=-0.249), right=FREE
+    )
+    one, two = leaf("one", "left"), leaf("two", "right")
+    (found,) = problems_of(made, goal("and"), one, two)
+    assert found.message.endswith("further apart, or put 'two' before 'one' in a THEN")
+    made = scene(
+        {"one": box(0.5, -0.5), "two": wall(0.5, -0.3)},
+        left=Pose(x=0.5, y=0.101),
+        right=Pose(x=0.5, y=0.05),
+    )
+    (found,) = problems_of(made, goal("and"), one, two)
+    assert found.message.endswith(", or put 'one' before 'two' in a THEN")
+    assert problems_of(made, goal("then"), one, two) == []
