@@ -19,7 +19,9 @@ from mend.maps.compiled import compiled
 Depth = NDArray[np.float32]
 
 EXPOSURES = 8
-"""A camera that stands still fuses so many exposures into one picture."""
+"""A camera that stands still fuses at least so many exposures into one picture."""
+_SURE_M = 0.0008
+"""What a camera that chooses for itself how many exposures it fuses leaves of their noise."""
 
 _NEAREST_M, _FARTHEST_M = 0.3, 4.5
 _STEEPEST_RAD = math.radians(80.0)
@@ -78,6 +80,12 @@ class _DrawnAhead:
 
     def _draw(self, shape: tuple[int, ...]) -> NDArray[np.float32]:
         return self._rng.standard_normal(shape, dtype=np.float32)
+
+
+def exposures_from(depth_m: float) -> int:
+    """So many exposures that surfaces so far away are measured surely enough to tell low parts."""
+    of_one_m = float(_axial_sigma_m(depth_m, 0.0))
+    return max(EXPOSURES, math.ceil((of_one_m / _SURE_M) ** 2))
 
 
 class DepthNoise:

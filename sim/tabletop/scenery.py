@@ -11,7 +11,7 @@ from mend.robots.arm.body import ToolPose
 from mend.robots.body import CameraImage, Matrix4
 from mend.robots.vision.viewpoint import Viewpoint
 from mend.sim.base_frame import base_in_scene, tool_in_base
-from mend.sim.depth_noise import DepthNoise, PinholeOptics
+from mend.sim.depth_noise import DepthNoise, PinholeOptics, exposures_from
 from mend.sim.lighting import Lighting
 from mend.sim.other_robots import around, blank
 from mend.sim.raster import Light, Mesh, Rasterizer, RenderedImage, box_triangles
@@ -278,6 +278,12 @@ def look_at_table(table: Table) -> Matrix4:
 def head_viewpoint(table: Table) -> Viewpoint:
     """What the head camera sees from where it is."""
     return Viewpoint(look_at_table(table), HEAD_SIZE, HEAD_FOCAL_PX, _center_px(HEAD_SIZE))
+
+
+def head_exposures(table: Table) -> int:
+    """So many exposures the head camera fuses: the more, the farther away the table makes it be."""
+    away = look_at_table(table)[:3, 3] - np.array([*table.center, table.height])
+    return exposures_from(float(np.linalg.norm(away)))
 
 
 def _center_px(size: tuple[int, int]) -> tuple[float, float]:

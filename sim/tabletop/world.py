@@ -20,7 +20,13 @@ from mend.sim.tabletop.body import TabletopBody
 from mend.sim.tabletop.options import REACH_MIN_M, TabletopOptions
 from mend.sim.tabletop.part import TablePart, UprightPose, Whereabouts
 from mend.sim.tabletop.person import TabletopPerson
-from mend.sim.tabletop.scenery import BLOCKER_COLOR, ForearmCamera, HeadCamera, Scenery
+from mend.sim.tabletop.scenery import (
+    BLOCKER_COLOR,
+    ForearmCamera,
+    HeadCamera,
+    Scenery,
+    head_exposures,
+)
 from mend.sim.tabletop.snapshot import TabletopSnapshot, to_rest_pose
 from mend.sim.tabletop.state import TabletopState
 from mend.tasks.intervention import Intervention
@@ -51,7 +57,7 @@ class TabletopWorld:
         self._state.person_acts = self._person.act
         scenery = Scenery(self._state)
         lighting = Lighting(Light(), chosen.light, chosen.camera_noise, light_rng)
-        depth_noise = DepthNoise(chosen.depth_noise, depth_rng)
+        depth_noise = DepthNoise(chosen.depth_noise, depth_rng, head_exposures(scene.table))
         self.cameras = [
             RobotCameras(
                 HeadCamera(self._state, each, scenery, lighting, depth_noise),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mend.sim.depth_noise import DepthNoise, PinholeOptics
+from mend.sim.depth_noise import EXPOSURES, DepthNoise, PinholeOptics, exposures_from
 
 OPTICS = PinholeOptics(460.0, (159.5, 119.5))
 GREY = np.full((240, 320, 3), 128, np.uint8)
@@ -85,3 +85,12 @@ def test_a_picture_that_comes_again_is_as_noisy_as_one_that_is_new() -> None:
     second = again.measure(depth, bgr, OPTICS)
     assert np.array_equal(second, anew.measure(depth.copy(), bgr.copy(), OPTICS), equal_nan=True)
     assert not np.array_equal(first, second, equal_nan=True)
+
+
+def test_what_is_farther_away_is_measured_as_surely_by_more_exposures() -> None:
+    exposures = [exposures_from(distance_m) for distance_m in (0.8, 1.5, 2.5)]
+    assert exposures == sorted(set(exposures))
+    assert exposures[0] == EXPOSURES
+    noise = [measure(flat(m), exposures=n) for m, n in zip((1.5, 2.5), exposures[1:], strict=True)]
+    near, far = (each[90:150, 130:190].std() for each in noise)
+    assert far == pytest.approx(near, rel=0.1)

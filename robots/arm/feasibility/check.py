@@ -1,16 +1,19 @@
 """The check of a whole scene: each part by itself, and what gets in each other's way."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from itertools import combinations
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import combinations, product
 
+from mend.robots.arm.behaviors.grasp_choice import Crowding
 from mend.robots.arm.behaviors.planning import Planner
+from mend.robots.arm.feasibility.burdens import Burdens
 from mend.robots.arm.feasibility.doing import ArmCheck, Hindrance
 from mend.robots.arm.feasibility.handling import cannot_handle
 from mend.robots.arm.feasibility.merging import one_surface
 from mend.robots.arm.feasibility.moments import Job, Moment, Moments
 from mend.robots.arm.feasibility.sight import hidden, out_of_picture
-from mend.robots.arm.feasibility.standing import Standing, at_place, starts
+from mend.robots.arm.feasibility.standing import Standing, at_place, resting_on, starts
 from mend.robots.arm.feasibility.strewn import StrewnPart, told_together
 from mend.robots.arm.feasibility.support import cannot_stand
 from mend.robots.vision.viewpoint import Viewpoint
@@ -102,20 +105,45 @@ class _SceneCheck:
 
     def _standing(self, told: "_ToldProblems") -> list[SceneProblem]:
         found: dict[tuple[str, ...], SceneProblem] = {}
-        standing = list(self._starts.values())
-        for each in standing:
-            if told.of(each):
-                continue
-            for problem in cannot_stand(each, standing, self._scene):
-                found.setdefault(problem.where, problem)
-        for job in self._jobs:
-            if job.place is None or told.of(job.start):
-                continue
-            others = [each.place for each in self._jobs if each.place and each is not job]
-            unmoved = [each for each in standing if each.name != job.name]
-            for problem in cannot_stand(job.place, [*others, *unmoved], self._scene):
+        wanted: list[tuple[Standing, Job | None]] = [
+            (each, None) for each in self._starts.values() if not told.of(each)
+        ]
+        wanted += [(job.place, job) for job in self._jobs if job.place and not told.of(job.start)]
+        for standing, job in wanted:
+            for problem in cannot_stand(standing, self._around(standing, job), self._scene):
                 found.setdefault(problem.where, problem)
         return list(found.values())
+
+    def _around(self, standing: Standing, job: Job | None) -> Sequence[Standing]:
+        """What else stands there when a part stands least firmly; `job` is what places it.
+
+        Without leaves anything may be brought under a place, and nothing onto it.
+        """
+        if self._together:
+            return self._burdens.around(standing, job)
+        if job is None:
+            return list(self._starts.values())
+        others = [
+            each
+            for each in self._anywhere
+            if each.name != standing.name and each.where != standing.where
+        ]
+        above = resting_on(standing, others)
+        return [each for each in others if each not in above]
+
+    @cached_property
+    def _burdens(self) -> Burdens:
+        weights = {name: each.mass_kg for name, each in self._scene.objects.items()}
+        return Burdens(self._jobs, list(self._starts.values()), self._order, weights)
+
+    @cached_property
+    def _anywhere(self) -> list[Standing]:
+        """Every part where it starts, and at every place."""
+        scene = self._scene
+        return [
+            *self._starts.values(),
+            *(at_place(scene, *each) for each in product(scene.objects, scene.places)),
+        ]
 
     def _overlaps(self) -> list[SceneProblem]:
         found = [
@@ -227,8 +255,25 @@ class _RobotCheck:
         if (problem := hidden(job.start, sure, self._head.eye, moved)) is not None:
             return problem
         if (hindrance := self._hindrance(job, moments)) is not None:
-            return self._arm.told(hindrance, moved)
+            return self._with_order(self._arm.told(hindrance, moved), hindrance, job, moments)
         return out_of_picture(job, self._head, self._scatter)
+
+    def _with_order(
+        self, problem: SceneProblem, hindrance: Hindrance, job: Job, moments: Moments
+    ) -> SceneProblem:
+        """What is told of too little room, and which THEN would do as well, if one would."""
+        if isinstance(problem, StrewnPart) or not isinstance(hindrance.barred.reason, Crowding):
+            return problem
+        sure, maybe = moments.around(moments.of(job))
+        for each in maybe:
+            others = [other for other in (*sure, *maybe) if other is not each]
+            in_the_way = each.name in hindrance.names
+            if in_the_way and self._arm.hindrance(job.start, job.place, others) is None:
+                taken_away = each.where[0] == "objects"
+                first, later = (each, job) if taken_away else (job, each)
+                order = f"or put '{first.name}' before '{later.name}' in a THEN"
+                return replace(problem, message=f"{problem.message}, {order}")
+        return problem
 
     def _hindrance(self, job: Job, moments: Moments) -> Hindrance | None:
         """What keeps the arm from a job at a moment that the order allows; None if nothing does."""

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mend.robots.arm.feasibility.standing import Standing, beneath
+from mend.robots.arm.feasibility.standing import Standing, resting_on
 from mend.tasks.leaf_order import LeafOrder
 
 
@@ -71,10 +71,10 @@ class Moments:
         ]
         done = {each.name for each in others if each.leaf in moment.done}
         starts = [each for each in self._starts if each.name != job.name and each.name not in done]
-        above = _resting_on(job.start, starts)
+        above = resting_on(job.start, starts)
         if job.place is not None:
             places = [each for each in places if each.where != spots[-1].where]
-            above += _resting_on(job.place, places)
+            above += resting_on(job.place, places)
         standing = [
             each
             for each in (*starts, *places)
@@ -120,17 +120,3 @@ class Moments:
         more = {each for each in leaves if self._order.is_before(job.leaf, each)} | {job.leaf}
         waiting = moment.waiting | more
         return None if moment.done & waiting else Moment(moment.job, moment.done, waiting)
-
-
-def _resting_on(lowest: Standing, others: Sequence[Standing]) -> list[Standing]:
-    """All that stands on a part, directly or by way of others."""
-    found: list[Standing] = []
-    layer = [lowest]
-    while layer:
-        layer = [
-            each
-            for each in others
-            if each not in found and any(one in layer for one in beneath(each, layer))
-        ]
-        found += layer
-    return found

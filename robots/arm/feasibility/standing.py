@@ -75,6 +75,20 @@ def beneath(standing: Standing, others: Sequence[Standing]) -> list[Standing]:
     ]
 
 
+def resting_on(lowest: Standing, others: Sequence[Standing]) -> list[Standing]:
+    """All that stands on a part, directly or by way of others."""
+    found: list[Standing] = []
+    layer = [lowest]
+    while layer:
+        layer = [
+            each
+            for each in others
+            if each not in found and any(one in layer for one in beneath(each, layer))
+        ]
+        found += layer
+    return found
+
+
 def _standing(scene: Scene, name: str, pose: Pose, where: tuple[str, ...]) -> Standing:
     made = scene.objects[name]
     bottom_z = scene.table.height if pose.z is None else pose.z

@@ -18,7 +18,7 @@ from mend.sim.tabletop.colors import learn_colors
 from mend.sim.tabletop.options import TabletopOptions
 from mend.sim.tabletop.world import TabletopWorld
 from mend.tasks.intervention import Act, Intervention
-from mend.tasks.scene import Pose, Scene, SceneObject
+from mend.tasks.scene import Pose, Scene, SceneObject, Table
 from mend.tasks.scene_file import built_in_scene
 
 NOISY = TabletopOptions(camera_noise=4.0, light=1.0, depth_noise=1.0)
@@ -388,3 +388,21 @@ def test_a_thin_part_of_which_little_is_seen_is_in_the_way() -> None:
     watcher.do(Act.MOVE, "wall", to=Pose(x=0.45, y=0.0))
     assert "candle" in watcher.seen()
     assert where_the_top_belongs(watcher) == "candle is where top belongs"
+
+
+@pytest.mark.parametrize("size", [(0.36, 0.62), (0.70, 1.30), (0.90, 1.60), (1.00, 2.00)])
+def test_the_lowest_parts_are_told_from_a_table_however_far_away_it_makes_the_camera(
+    size: tuple[float, float],
+) -> None:
+    plate, knob = (0.05, 0.04, 0.008), (0.016, 0.016, 0.024)
+    parts = {
+        "near": at(0.6, -0.25, size=plate, knob=knob),
+        "far": at(0.75, 0.05, size=plate, knob=knob),
+    }
+    table = Table(center=(0.7, -0.1), size=size)
+    watcher = Watcher(scene_of(parts).model_copy(update={"table": table}))
+    head = watcher.perception.head
+    assert head.why_blind(head.look()) is None
+    seen = watcher.seen()
+    assert near(seen["near"], (0.6, -0.25))
+    assert near(seen["far"], (0.75, 0.05))

@@ -536,3 +536,39 @@ def test_of_a_scene_by_itself_is_told_what_no_order_could_mend() -> None:
     of_hider, of_low = told({"low": low, "hider": too_heavy})
     assert of_hider.startswith("hider weighs")
     assert of_low == "hider hides low from the head camera: move one of them"
+
+
+def test_by_itself_a_scene_may_have_a_place_on_what_a_task_brings_to_another_place() -> None:
+    parts = {
+        "pillar_1": box(0.45, -0.5, (0.03, 0.03, 0.06)),
+        "pillar_2": box(0.50, -0.04, (0.03, 0.03, 0.06)),
+        "lintel": box(0.6, -0.4, (0.03, 0.18, 0.02)),
+        "statue": box(0.45, -0.35, (0.02, 0.02, 0.04)),
+    }
+    places = {
+        "right": Pose(x=0.5, y=-0.04),
+        "left": Pose(x=0.5, y=0.1),
+        "lintel": Pose(x=0.5, y=0.03, z=0.76),
+        "statue": Pose(x=0.5, y=0.03, z=0.78),
+    }
+    assert problems_of(scene(parts, **places)) == []
+    too_high = {**places, "lintel": Pose(x=0.5, y=0.03, z=0.79)}
+    told = {each.where: each.message for each in problems_of(scene(parts, **too_high))}
+    assert "the nearest top there is that of pillar_" in told["places", "lintel", "pose"]
+
+
+def test_where_the_order_is_open_the_then_that_would_do_is_told() -> None:
+    made = scene(
+        {"one": box(0.5, -0.5), "two": wall(0.5, -0.3)}, left=Pose(x=0.5, y=-0.249), right=FREE
+    )
+    one, two = leaf("one", "left"), leaf("two", "right")
+    (found,) = problems_of(made, goal("and"), one, two)
+    assert found.message.endswith("further apart, or put 'two' before 'one' in a THEN")
+    made = scene(
+        {"one": box(0.5, -0.5), "two": wall(0.5, -0.3)},
+        left=Pose(x=0.5, y=0.101),
+        right=Pose(x=0.5, y=0.05),
+    )
+    (found,) = problems_of(made, goal("and"), one, two)
+    assert found.message.endswith(", or put 'one' before 'two' in a THEN")
+    assert problems_of(made, goal("then"), one, two) == []
