@@ -16,6 +16,8 @@ import { ChoicePanel } from "./choice_panel";
 import { DialogueNow } from "./dialogue_now";
 import { ended, nodeViews, type RunState } from "./fold";
 import { Leaves } from "./leaves";
+import { faultBeside } from "./faults";
+import { useFaultKeys } from "./fault_keys";
 import { doersOf } from "./leaf_words";
 import { useMomentInAddress } from "./moment_in_address";
 import { openRun, type RunFeed } from "./run_feed";
@@ -117,6 +119,20 @@ function Shown({ feed, version, state, latest }: ShownProps) {
     },
     [history, moment, goToEvent],
   );
+  // At the end that is the last event, which may itself be a fault.
+  const shownSeq = newest ? Infinity : state.seq;
+  const goToFault = useCallback(
+    (direction: -1 | 1) => {
+      const fault = faultBeside(history.events, shownSeq, direction);
+      if (fault === null) return;
+      if (fault.type !== "robot_lost") setSelected(fault.node);
+      goToEvent(fault);
+    },
+    [history, shownSeq, goToEvent],
+  );
+  useFaultKeys(goToFault);
+  const faultSteps = (direction: -1 | 1) =>
+    faultBeside(history.events, shownSeq, direction) === null ? null : () => goToFault(direction);
   const views = useMemo(
     () => nodeViews(state),
     [state.leaves, state.abandoned, state.potentials, state.status],
@@ -206,7 +222,12 @@ function Shown({ feed, version, state, latest }: ShownProps) {
           </div>
         </>
       )}
-      <Scrubber moment={moment} going={!ended(latest.status)} onStep={step} />
+      <Scrubber
+        moment={moment}
+        going={!ended(latest.status)}
+        onStep={step}
+        faults={{ before: faultSteps(-1), after: faultSteps(1) }}
+      />
     </div>
   );
 }

@@ -16,9 +16,16 @@ interface ScrubberProps {
   going: boolean;
   /** Go to the event before or after the moment. */
   onStep: (direction: -1 | 1) => void;
+  faults?: FaultSteps;
 }
 
-export function Scrubber({ of = "the run", moment, going, onStep }: ScrubberProps) {
+/** Going from fault to fault; null where there is none that way. */
+interface FaultSteps {
+  before: (() => void) | null;
+  after: (() => void) | null;
+}
+
+export function Scrubber({ of = "the run", moment, going, onStep, faults }: ScrubberProps) {
   const time = moment.time.value;
   const end = moment.end.value;
   const newest = moment.newest.value;
@@ -28,6 +35,7 @@ export function Scrubber({ of = "the run", moment, going, onStep }: ScrubberProp
   return (
     <section class={`scrubber ${newest ? "newest" : "past"}`} aria-label="Moment">
       <div class="scrubber-buttons">
+        {faults && <FaultButton name="Previous fault" keys="Shift+ArrowLeft" d={FAULT_BEFORE} go={faults.before} />}
         <button type="button" class="bare icon-button" aria-label="One event back" onClick={() => onStep(-1)}>
           <Icon d="M14 4l-8 6 8 6zM4 4v12" />
         </button>
@@ -42,6 +50,7 @@ export function Scrubber({ of = "the run", moment, going, onStep }: ScrubberProp
         <button type="button" class="bare icon-button" aria-label="One event on" disabled={newest} onClick={() => onStep(1)}>
           <Icon d="M6 4l8 6-8 6zM16 4v12" />
         </button>
+        {faults && <FaultButton name="Next fault" keys="Shift+ArrowRight" d={FAULT_AFTER} go={faults.after} />}
       </div>
       <input
         type="range"
@@ -85,6 +94,25 @@ export function Scrubber({ of = "the run", moment, going, onStep }: ScrubberProp
         </button>
       )}
     </section>
+  );
+}
+
+const FAULT_BEFORE = "M3 10l5-4v8zM14 4l5 10H9z";
+const FAULT_AFTER = "M17 10l-5-4v8zM6 4l5 10H1z";
+
+function FaultButton({ name, keys, d, go }: { name: string; keys: string; d: string; go: (() => void) | null }) {
+  return (
+    <button
+      type="button"
+      class="bare icon-button"
+      aria-label={name}
+      aria-keyshortcuts={keys}
+      title={`${name} (${keys.replace("Arrow", "").replace("Left", "←").replace("Right", "→")})`}
+      aria-disabled={go === null}
+      onClick={() => go?.()}
+    >
+      <Icon d={d} />
+    </button>
   );
 }
 
