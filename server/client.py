@@ -210,6 +210,10 @@ class MendClient:
         """The report of a run, so far, as HTML."""
         return (await self._request("GET", f"/api/runs/{run}/report")).content
 
+    async def run_export(self, run: UUID, form: Literal["csv", "mcap"]) -> bytes:
+        """A run so far as a file for other programs."""
+        return (await self._request("GET", f"/api/runs/{run}/export?format={form}")).content
+
     async def run(self, run: UUID) -> RunView:
         return await self._get(f"/api/runs/{run}", RunView)
 

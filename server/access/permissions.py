@@ -76,6 +76,7 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     Endpoint("get_run", "GET", _RUN, Role.VIEWER),
     Endpoint("list_events", "GET", _RUN + "/events", Role.VIEWER),
     Endpoint("get_run_report", "GET", _RUN + "/report", Role.VIEWER),
+    Endpoint("export_run", "GET", _RUN + "/export", Role.VIEWER),
     Endpoint("get_camera_picture", "GET", _RUN + "/cameras/{camera}", Role.VIEWER),
     Endpoint("get_layout", "GET", _RUN + "/layout", Role.VIEWER),
     Endpoint("get_poses", "GET", _RUN + "/poses", Role.VIEWER),

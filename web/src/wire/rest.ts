@@ -234,6 +234,7 @@ export const checkTree = (text: string, signal: AbortSignal) =>
   call<DocumentCheck>("POST", "/api/trees/check", { text }, { signal });
 export const deleteTree = (name: string) => call<void>("DELETE", `/api/trees/${segment(name)}`);
 
+export const exportPath = (run: string, format: "csv" | "mcap") => `/api/runs/${segment(run)}/export?format=${format}`;
 export const picturePath = (picture: string) => `/api/pictures/${segment(picture)}`;
 export const cameraPath = (run: string, camera: string) =>
   `/api/runs/${segment(run)}/cameras/${segment(camera)}`;
