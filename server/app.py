@@ -31,6 +31,7 @@ from mend.server.api import (
     session,
     speech,
     speech_socket,
+    statistics,
 )
 from mend.server.api import fleet as fleet_api
 from mend.server.api import models as models_api
@@ -75,6 +76,7 @@ ROUTES = (
     run_report,
     run_export,
     issues,
+    statistics,
     leaves,
     poses_api,
     dialogues,

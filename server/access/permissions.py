@@ -89,6 +89,7 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     Endpoint("give_leaf_back", "POST", _RUN + "/leaves/give_back", Role.HELPER),
     Endpoint("say_of_leaf", "POST", _RUN + "/leaves/say", Role.HELPER),
     Endpoint("list_issues", "GET", "/api/issues", Role.VIEWER),
+    Endpoint("get_statistics", "GET", "/api/statistics", Role.VIEWER),
     Endpoint("list_dialogues", "GET", "/api/dialogues", Role.VIEWER),
     Endpoint("get_dialogue", "GET", _DIALOGUE, Role.VIEWER),
     Endpoint("answer_prompt", "POST", _DIALOGUE + "/answers", Role.HELPER),

@@ -93,6 +93,13 @@ async def issues(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def statistics(service: Service, open_page: OpenPage) -> Page:
+    await service.journal.append(Entry(events=recorded_events()))
+    page = await open_page("/statistics")
+    await expect(page.get_by_role("region", name="By part")).to_be_visible()
+    return page
+
+
 async def live_run(service: Service, open_page: OpenPage) -> Page:
     run = await ask(service)
     page = await open_page(f"/runs/{run}")
@@ -355,6 +362,7 @@ SITUATIONS: dict[str, Situation] = {
         no_runs,
         runs,
         issues,
+        statistics,
         live_run,
         run_in_building,
         taken_leaf,

@@ -97,8 +97,8 @@ export function Scrubber({ of = "the run", moment, going, onStep, faults }: Scru
   );
 }
 
-const FAULT_BEFORE = "M3 10l5-4v8zM14 4l5 10H9z";
-const FAULT_AFTER = "M17 10l-5-4v8zM6 4l5 10H1z";
+const FAULT_BEFORE = "M2 10l3-2.5v5zM14 5l4.5 9h-9z";
+const FAULT_AFTER = "M18 10l-3-2.5v5zM6 5l4.5 9h-9z";
 
 function FaultButton({ name, keys, d, go }: { name: string; keys: string; d: string; go: (() => void) | null }) {
   return (
@@ -130,6 +130,8 @@ function Where({ going }: { going: boolean }) {
   return connection.value === "connected" ? <b class="live">Live</b> : <b>Not connected, last seen</b>;
 }
 
+const LINK = "M8 12l4-4M9 6l2-2a3.5 3.5 0 0 1 5 5l-2 2M11 14l-2 2a3.5 3.5 0 0 1-5-5l2-2";
+
 function CopyLink({ time }: { time: number }) {
   const [copied, setCopied] = useState<number | null>(null);
   const copy = () =>
@@ -140,8 +142,9 @@ function CopyLink({ time }: { time: number }) {
   // Pages that came over plain http from elsewhere have no clipboard; the address says the same.
   if (navigator.clipboard === undefined) return null;
   return (
-    <button type="button" class="button" onClick={() => void copy()}>
-      {copied === time ? "Link copied" : "Copy link"}
+    <button type="button" class="button scrubber-copy" onClick={() => void copy()}>
+      <Icon d={copied === time ? "M4 10l4 4 8-9-8 9z" : LINK} />
+      <span>{copied === time ? "Link copied" : "Copy link"}</span>
     </button>
   );
 }

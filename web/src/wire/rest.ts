@@ -23,6 +23,7 @@ import type {
   SessionView,
   SiteView,
   SpeechView,
+  Statistics,
   TrialView,
   UnderstoodView,
   DeviceView,
@@ -121,6 +122,7 @@ export const issues = (wanted: string, before: number | null, limit: number) => 
   if (before !== null) query.set("before", String(before));
   return call<IssueSummary[]>("GET", `/api/issues?${query}`);
 };
+export const statistics = (query: string) => call<Statistics>("GET", `/api/statistics?${query}`);
 export const run = (id: string) => call<RunView>("GET", `/api/runs/${segment(id)}`);
 export const startRun = (request: RunRequest) => call<RunSummary>("POST", "/api/runs", request);
 export const pauseRun = (id: string) => call<RunSummary>("POST", `/api/runs/${segment(id)}/pause`);
