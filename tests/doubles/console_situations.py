@@ -194,6 +194,19 @@ async def taken_leaf(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def plotted_run(service: Service, open_page: OpenPage) -> Page:
+    page = await finished_run(service, open_page)
+    if await page.get_by_role("tab", name="Timeline").is_visible():
+        await page.get_by_role("tab", name="Timeline").click()
+    await page.get_by_role("button", name="Plots of numbers").click()
+    for number in ("node started: attempt", "gripper: opening"):
+        await page.get_by_label("Number to plot").select_option(label=number)
+        await expect(page.get_by_role("slider", name=number)).to_be_visible()
+    attempts = page.get_by_role("region", name="node started: attempt")
+    await attempts.get_by_role("button", name="As a table").click()
+    return page
+
+
 async def finished_run(service: Service, open_page: OpenPage) -> Page:
     request = RunRequest(tree="eket", world="tabletop", speed="max", scenario="eket_paper")
     run = await service.runtime.start_run(request)
@@ -367,6 +380,7 @@ SITUATIONS: dict[str, Situation] = {
         run_in_building,
         taken_leaf,
         finished_run,
+        plotted_run,
         trees,
         wrong_tree,
         delete_tree,

@@ -39,7 +39,7 @@ async def test_faults_are_told_by_part_and_lead_to_the_issues(
 async def test_runs_are_chosen_by_day_and_tree(service: Service, open_page: OpenPage) -> None:
     await service.journal.append(Entry(events=recorded_events()))
     page = await open_page("/statistics")
-    await page.get_by_label("Task tree").select_option("eket")
+    await page.get_by_label("Task tree", exact=True).select_option("eket")
     await expect(page.get_by_text("6 faults in 6 picks")).to_be_visible()
     await page.get_by_label("To", exact=True).fill("2026-11-01")
     await expect(page.get_by_text("There is no run like this.")).to_be_visible()

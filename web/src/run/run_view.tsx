@@ -32,6 +32,8 @@ import "./run.css";
 
 const ScenePanel = later(() => import("./scene/scene_panel").then((module) => module.ScenePanel));
 
+const Plots = later(() => import("./plots/plots").then((module) => module.Plots));
+
 const PlanPanel = later(() => import("../building/plan_panel").then((module) => module.PlanPanel));
 
 /** The world whose robots have no cameras. */
@@ -170,8 +172,10 @@ function Shown({ feed, version, state, latest }: ShownProps) {
     </div>
   );
   const timeline = useMemo(
-    () => <TimelinePanel feed={feed} version={version} onSelect={setSelected} onGoTo={goToEvent} />,
-    [feed, version, goToEvent],
+    () => (
+      <TimelinePanel run={state.started.run} feed={feed} version={version} onSelect={setSelected} onGoTo={goToEvent} />
+    ),
+    [state.started.run, feed, version, goToEvent],
   );
   const { scene } = state.started;
   const plan = useMemo(() => planOf(scene), [scene]);
@@ -301,17 +305,19 @@ function useChoices(feed: RunFeed, state: RunState, selected: string | null): re
 }
 
 interface TimelinePanelProps {
+  run: string;
   feed: RunFeed;
   version: number;
   onSelect: (path: string) => void;
   onGoTo: (event: { seq: number; time: number }) => void;
 }
 
-function TimelinePanel({ feed, version, onSelect, onGoTo }: TimelinePanelProps) {
+function TimelinePanel({ run, feed, version, onSelect, onGoTo }: TimelinePanelProps) {
   const { history, moment } = feed;
   // Not every frame of poses: the lanes grow in steps that nobody sees.
   const end = useComputed(() => Math.ceil(moment.end.value / LANE_STEP_S) * LANE_STEP_S).value;
   const lanes = useMemo(() => lanesOf(history.events, end), [history, version, end]);
+  const [plotted, setPlotted] = useState(false);
   const choose = (item: TimelineItem) => {
     if (item.node !== null) onSelect(item.node);
     onGoTo({ seq: item.seq, time: item.start });
@@ -319,6 +325,15 @@ function TimelinePanel({ feed, version, onSelect, onGoTo }: TimelinePanelProps) 
   return (
     <div class="panel run-timeline">
       <Timeline lanes={lanes} end={end} moment={moment} onChoose={choose} />
+      <button
+        type="button"
+        class="small-button run-plots-button"
+        aria-expanded={plotted}
+        onClick={() => setPlotted(!plotted)}
+      >
+        Plots of numbers
+      </button>
+      {plotted && <Plots run={run} history={history} version={version} end={end} moment={moment} />}
     </div>
   );
 }
