@@ -198,7 +198,7 @@ async def plotted_run(service: Service, open_page: OpenPage) -> Page:
     page = await finished_run(service, open_page)
     if await page.get_by_role("tab", name="Timeline").is_visible():
         await page.get_by_role("tab", name="Timeline").click()
-    await page.get_by_role("button", name="Plots of numbers").click()
+    await page.get_by_role("button", name="Plots", exact=True).click()
     for number in ("node started: attempt", "gripper: opening"):
         await page.get_by_label("Number to plot").select_option(label=number)
         await expect(page.get_by_role("slider", name=number)).to_be_visible()

@@ -23,7 +23,7 @@ RUN = RECORDED[0].run
 async def opened(service: Service, open_page: OpenPage) -> Page:
     await service.journal.append(Entry(events=RECORDED))
     page = await open_page(f"/runs/{RUN}")
-    await page.get_by_role("button", name="Plots of numbers").click()
+    await page.get_by_role("button", name="Plots", exact=True).click()
     return page
 
 

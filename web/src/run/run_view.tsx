@@ -324,15 +324,17 @@ function TimelinePanel({ run, feed, version, onSelect, onGoTo }: TimelinePanelPr
   };
   return (
     <div class="panel run-timeline">
-      <Timeline lanes={lanes} end={end} moment={moment} onChoose={choose} />
-      <button
-        type="button"
-        class="small-button run-plots-button"
-        aria-expanded={plotted}
-        onClick={() => setPlotted(!plotted)}
-      >
-        Plots of numbers
-      </button>
+      <Timeline
+        lanes={lanes}
+        end={end}
+        moment={moment}
+        onChoose={choose}
+        more={
+          <button type="button" class="small-button" aria-expanded={plotted} onClick={() => setPlotted(!plotted)}>
+            Plots
+          </button>
+        }
+      />
       {plotted && <Plots run={run} history={history} version={version} end={end} moment={moment} />}
     </div>
   );
