@@ -194,6 +194,13 @@ async def taken_leaf(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def past_of_run(service: Service, open_page: OpenPage) -> Page:
+    page = await finished_run(service, open_page)
+    await page.get_by_role("button", name="Previous fault").click()
+    await expect(page.get_by_role("button", name="Copy link")).to_be_visible()
+    return page
+
+
 async def plotted_run(service: Service, open_page: OpenPage) -> Page:
     page = await finished_run(service, open_page)
     if await page.get_by_role("tab", name="Timeline").is_visible():
@@ -380,6 +387,7 @@ SITUATIONS: dict[str, Situation] = {
         run_in_building,
         taken_leaf,
         finished_run,
+        past_of_run,
         plotted_run,
         trees,
         wrong_tree,

@@ -139,12 +139,13 @@ function CopyLink({ time }: { time: number }) {
       () => setCopied(time),
       () => setCopied(null),
     );
+  const words = copied === time ? "Link copied" : "Copy link";
   // Pages that came over plain http from elsewhere have no clipboard; the address says the same.
   if (navigator.clipboard === undefined) return null;
   return (
-    <button type="button" class="button scrubber-copy" onClick={() => void copy()}>
+    <button type="button" class="button scrubber-copy" aria-label={words} onClick={() => void copy()}>
       <Icon d={copied === time ? "M4 10l4 4 8-9-8 9z" : LINK} />
-      <span>{copied === time ? "Link copied" : "Copy link"}</span>
+      <span>{words}</span>
     </button>
   );
 }
