@@ -9,13 +9,15 @@ from pathlib import Path
 from typing import Any
 from uuid import UUID
 
+from mend.server.access.roles import Role
 from mend.server.journal import events as ev
-from mend.server.journal import issue_index, run_index
+from mend.server.journal import issue_index, run_index, work_index
 from mend.server.journal.chain import Chain, Row
 from mend.server.journal.issue_index import note_issue
 from mend.server.journal.run_index import note
 from mend.server.journal.sqlite import INSERT_EVENT, SqliteJournal
 from mend.server.journal.upgrades import current_version
+from mend.server.journal.work_index import GRASP_STEP, note_work
 
 BEGUN = datetime(2026, 1, 1, tzinfo=UTC)
 BETWEEN_RUNS = timedelta(minutes=10)
@@ -25,7 +27,12 @@ ROBOT = f"pr2-{NUMBER}"
 PARTS = 4
 STEPS = ("above pick", "pick", "close gripper", "above pick", "above place", "place")
 STEPS += ("open gripper", "above place")
-INDEXED = {*run_index.INDEXED_TYPES, *issue_index.INDEXED_TYPES}
+INDEXED = {
+    *run_index.INDEXED_TYPES,
+    *issue_index.INDEXED_TYPES,
+    *work_index.INDEXED_TYPES,
+}
+ANNA = ev.Author(principal="anna", role=Role.HELPER)
 JPEG = b"\xff\xd8" + bytes(4000) + b"\xff\xd9"
 
 
@@ -107,7 +114,8 @@ def _dropped(at: dict[str, Any], doing: dict[str, Any]) -> Iterator[ev.Event]:
     prompt = UUID(f"00000002-0000-4000-8000-{NUMBER}")
     yield ev.DialogueOpened(**dialogue)
     yield ev.Prompt(**dialogue, prompt=prompt, version=1, kind="ask", text="Shall I go on?")
-    yield ev.Answered(**dialogue, prompt=prompt, version=1, answer="yes", helper="anna")
+    by = {"helper": "anna", "author": ANNA}
+    yield ev.Answered(**dialogue, **by, prompt=prompt, version=1, answer="yes")
     yield ev.DialogueClosed(**dialogue, reason="resolved")
     resumed = {name: at[name] for name in ("time", "wall_time", "run")}
     yield ev.RobotResumed(**resumed, robot=ROBOT, step=5)
@@ -158,10 +166,11 @@ def write_history(path: Path, runs: int, *, pictures: bool = False, first: int =
             head += len(rows)
             connection.executemany(INSERT_EVENT, rows)
             for row in rows:
-                if row[2] in INDEXED:
+                if row[2] in INDEXED and (row[2] != "step_started" or GRASP_STEP in row[5]):
                     event = ev.any_event.validate_json(row[5])
                     note(connection, event, row[5])
                     note_issue(connection, event)
+                    note_work(connection, event)
             if pictures:
                 connection.execute(
                     "INSERT INTO pictures (id, jpeg) VALUES (?, ?)", (str(picture_id(number)), JPEG)

@@ -26,11 +26,13 @@ from mend.server.api import (
     questions,
     reference,
     robots,
+    run_export,
     run_report,
     runs,
     session,
     speech,
     speech_socket,
+    statistics,
 )
 from mend.server.api import fleet as fleet_api
 from mend.server.api import models as models_api
@@ -74,7 +76,9 @@ ROUTES = (
     fleet_api,
     runs,
     run_report,
+    run_export,
     issues,
+    statistics,
     leaves,
     poses_api,
     dialogues,

@@ -16,6 +16,7 @@ from mend.server.api.issues import IssueSummary
 from mend.server.api.principals import CodeView, DeedsPage, PrincipalView, TokenView
 from mend.server.api.problems import Problem, problem
 from mend.server.api.speech import SpeechView
+from mend.server.api.statistics import Statistics
 from mend.server.client_connection import HelperEndpoint
 from mend.server.client_errors import RefusedError, UnreachableError
 from mend.server.client_retries import send_once
@@ -208,9 +209,31 @@ class MendClient:
             **{name: each.isoformat() for name, each in moments.items() if each is not None},
         )
 
+    async def statistics(
+        self,
+        *,
+        since: datetime | None = None,
+        until: datetime | None = None,
+        tree: str | None = None,
+        robot: str | None = None,
+    ) -> Statistics:
+        """How often what went wrong in the runs that began in a span, of a tree or a robot."""
+        moments = {"since": since, "until": until}
+        return await self._get(
+            "/api/statistics",
+            Statistics,
+            tree=tree,
+            robot=robot,
+            **{name: each.isoformat() for name, each in moments.items() if each is not None},
+        )
+
     async def run_report(self, run: UUID) -> bytes:
         """The report of a run, so far, as HTML."""
         return (await self._request("GET", f"/api/runs/{run}/report")).content
+
+    async def run_export(self, run: UUID, form: Literal["csv", "mcap"]) -> bytes:
+        """A run so far as a file for other programs."""
+        return (await self._request("GET", f"/api/runs/{run}/export?format={form}")).content
 
     async def run(self, run: UUID) -> RunView:
         return await self._get(f"/api/runs/{run}", RunView)

@@ -21,6 +21,7 @@ SUMMARIES = {
     "schedule": "Plan deliveries for several robots.",
     "localize": "Follow a robot through a recorded drive.",
     "replay": "Tell a run again from its journal.",
+    "export": "Write a run as a file for other programs.",
     "report": "Report what a building's robots did.",
     "train-colors": "Learn the colours of objects.",
     "access": "Say who may do what, and see who did what.",

@@ -2,12 +2,16 @@
 
 import logging
 import sqlite3
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
+from uuid import UUID
 
 from pydantic import ValidationError
 
-from mend.server.journal import issue_index, run_index
+from mend.server.journal import events as ev
+from mend.server.journal import issue_index, run_index, work_index
 from mend.server.journal.chain import chain_anew
 from mend.server.journal.events import Event, any_event
 from mend.server.journal.upgrades import UnknownEventVersionError, upgrade_text
@@ -44,11 +48,53 @@ def index_issues(connection: sqlite3.Connection) -> None:
             issue_index.note_issue(connection, row.event)
 
 
-def _rows(connection: sqlite3.Connection, types: Sequence[str]) -> Iterator[_Row]:
-    """The events of some types, in order."""
+def index_work(connection: sqlite3.Connection) -> None:
+    """Index the picks and questions of a journal's runs, within the caller's transaction."""
+    objects: dict[UUID, dict[str, str]] = {}
+    for row in _rows(connection, ("run_started", *work_index.INDEXED_TYPES), _MAY_BE_WORK):
+        event = row.event
+        if isinstance(event, ev.RunStarted):
+            objects[event.run] = _objects_of(event.tree)
+        elif isinstance(event, ev.StepStarted) and event.object is None:
+            handled = objects.get(event.run, {}).get(event.node)
+            work_index.note_work(connection, event.model_copy(update={"object": handled}))
+        elif event is not None:
+            work_index.note_work(connection, event)
+
+
+_MAY_BE_WORK = (
+    " AND (type != 'step_started'"
+    f" OR instr(body, '{work_index.GRASP}') OR instr(body, '{work_index.GRASP_STEP}'))"
+)
+"""Most steps are none, and take longer to be read than to be looked through."""
+
+
+def _objects_of(tree: Mapping[str, Any]) -> dict[str, str]:
+    """What the leaves of a tree handle, by their paths; nothing of one that is not as now."""
+    objects: dict[str, str] = {}
+    paths: list[str] = []
+    children: Counter[int] = Counter()
+    try:
+        for node in tree["nodes"]:
+            parent = node["parent"]
+            if parent is None:
+                paths.append("")
+                continue
+            paths.append(f"{paths[parent]}/{children[parent]}")
+            children[parent] += 1
+            handled = node.get("parameters", {}).get("object")
+            if handled is not None:
+                objects[paths[-1]] = handled
+    except (KeyError, TypeError, IndexError, AttributeError):
+        return {}
+    return objects
+
+
+def _rows(connection: sqlite3.Connection, types: Sequence[str], more: str = "") -> Iterator[_Row]:
+    """The events of some types, in order, for which `more` holds."""
     rows = connection.execute(
         "SELECT seq, run, type, version, body FROM events"
-        f" WHERE type IN ({', '.join('?' * len(types))}) ORDER BY seq",
+        f" WHERE type IN ({', '.join('?' * len(types))}){more} ORDER BY seq",
         types,
     )
     for seq, run, kind, version, body in rows:

@@ -11,6 +11,7 @@ from mend.server.journal.events import Event
 from mend.server.journal.issue_index import IssueIndex
 from mend.server.journal.keyed_request import FirstAnswer, KeptRequest, KeyedRequest
 from mend.server.journal.run_index import RunIndex
+from mend.server.journal.run_statistics import RunStatisticsIndex
 from mend.server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscription
 from mend.server.journal.trouble import Trouble
 
@@ -141,6 +142,11 @@ class Journal(Protocol):
     @property
     def issues(self) -> IssueIndex:
         """What issues were raised."""
+        ...
+
+    @property
+    def statistics(self) -> RunStatisticsIndex:
+        """What there is to tell of many runs."""
         ...
 
     @property

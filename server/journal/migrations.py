@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from mend.errors import MendError
-from mend.server.journal.indexing import index_events, index_issues
+from mend.server.journal.indexing import index_events, index_issues, index_work
 
 VERSION_1 = """
 CREATE TABLE events (
@@ -131,6 +131,28 @@ CREATE INDEX issues_of_object ON issues (object, seq);
 """
 
 
+VERSION_7 = """
+CREATE TABLE picks (
+    run TEXT NOT NULL,
+    robot TEXT NOT NULL,
+    part TEXT NOT NULL,
+    picks INTEGER NOT NULL,
+    PRIMARY KEY (run, robot, part)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE questions (
+    prompt TEXT PRIMARY KEY,
+    run TEXT NOT NULL,
+    robot TEXT NOT NULL,
+    issue TEXT NOT NULL,
+    part TEXT NOT NULL,
+    asked REAL NOT NULL,
+    answer_s REAL
+) STRICT, WITHOUT ROWID;
+CREATE INDEX questions_of_run ON questions (run);
+CREATE INDEX runs_by_start ON runs (started);
+"""
+
+
 @dataclass(frozen=True, slots=True)
 class Migration:
     """What leads to a version: statements, then what cannot be said in SQL."""
@@ -149,6 +171,7 @@ MIGRATIONS = (
     Migration(VERSION_4),
     Migration(VERSION_5),
     Migration(VERSION_6, index_issues),
+    Migration(VERSION_7, index_work),
 )
 
 

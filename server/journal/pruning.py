@@ -20,6 +20,7 @@ from mend.server.journal.chain import (
 )
 from mend.server.journal.issue_index import forget_issues_of_run
 from mend.server.journal.keyed_request import forget_requests_of_run
+from mend.server.journal.work_index import forget_work_of_run
 
 EVENTS_AT_ONCE = 500
 RUNS_AT_ONCE = 20
@@ -128,6 +129,7 @@ def _let_go(connection: sqlite3.Connection, keep: Keep, now: datetime) -> list[s
         connection.execute("DELETE FROM worlds WHERE run = ?", (run,))
         connection.execute("DELETE FROM dialogues WHERE run = ?", (run,))
         forget_issues_of_run(connection, run)
+        forget_work_of_run(connection, run)
         forget_requests_of_run(connection, run)
         _delete_receipts(connection, run, world, robots)
         connection.execute("DELETE FROM runs WHERE run = ?", (run,))

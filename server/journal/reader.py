@@ -14,7 +14,8 @@ from mend.server.journal.journal import JournalReadError, UnreadableEvent
 from mend.server.journal.migrations import MIGRATIONS, WITH_CHAIN, JournalSchemaError
 from mend.server.journal.readable import event_of
 from mend.server.journal.sqlite_errors import SQLITE_ERRORS, text_or_marks
-from mend.server.journal.stored_event import read_event
+from mend.server.journal.stored_event import current_text, read_event
+from mend.server.journal.subscriptions import Record
 
 
 class JournalReader:
@@ -77,6 +78,21 @@ class JournalReader:
         )
         where = f" of '{self._path}'"
         return [read_event(seq, body, version, where) for seq, body, version in rows]
+
+    def records(self, run: UUID) -> Iterator[Record]:
+        """The JSON of every event of a run, in order, one at a time.
+
+        Raises `JournalReadError`.
+        """
+        where = f" of '{self._path}'"
+        try:
+            rows = self._connection.execute(
+                "SELECT seq, body, version FROM events WHERE run = ? ORDER BY seq", (str(run),)
+            )
+            for seq, body, version in rows:
+                yield Record(seq, current_text(seq, body, version, where))
+        except SQLITE_ERRORS as error:
+            raise JournalReadError(f"'{self._path}' could not be read: {error}") from error
 
     def of_types(self, types: Sequence[str]) -> Iterator[Event | UnreadableEvent]:
         """Every event of some types, in order, also those of no run and those that are unreadable.

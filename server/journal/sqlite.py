@@ -43,11 +43,13 @@ from mend.server.journal.pruning import Keep, Pruned, prune, pruned_through
 from mend.server.journal.readable import read_readable
 from mend.server.journal.reading import ReadingThread
 from mend.server.journal.run_index import RunIndex, note, note_readable, note_unreadable
+from mend.server.journal.run_statistics import RunStatisticsIndex
 from mend.server.journal.same_file import FileGoneError
 from mend.server.journal.stored_event import current_text, read_event
 from mend.server.journal.subscriptions import DEFAULT_CAPACITY, Record, Subscribers, Subscription
 from mend.server.journal.trouble import Sleep, Trouble
 from mend.server.journal.upgrades import current_version
+from mend.server.journal.work_index import note_work
 from mend.server.journal.writer import CommitStatistics, Done, GroupCommitWriter
 
 __all__ = ["IN_MEMORY", "SqliteJournal"]
@@ -118,6 +120,7 @@ class SqliteJournal:
         self._chain = opened.chain
         self._index = RunIndex(self._pages.select, self._look_ups.select)
         self._issues = IssueIndex(self._pages.select)
+        self._statistics = RunStatisticsIndex(self._pages.select)
         self._others = opened.others
         self._subscribers = Subscribers()
         self._version = current_version()
@@ -158,6 +161,10 @@ class SqliteJournal:
     @property
     def issues(self) -> IssueIndex:
         return self._issues
+
+    @property
+    def statistics(self) -> RunStatisticsIndex:
+        return self._statistics
 
     @property
     def damage(self) -> Sequence[Break]:
@@ -248,6 +255,7 @@ class SqliteJournal:
             )
             note(connection, event, record.text)
             note_issue(connection, event)
+            note_work(connection, event)
         connection.executemany(INSERT_EVENT, rows)
         if entry.receipt is not None:
             connection.execute(

@@ -1,8 +1,8 @@
 """Poses on their way from robots to those who watch a run, and to its record."""
 
 import asyncio
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import AbstractAsyncContextManager, asynccontextmanager, contextmanager
 from typing import Protocol
 from uuid import UUID
 
@@ -10,7 +10,13 @@ from mend.robots.link.messages import IDENTITY, Hello, PoseLayout, Poses
 from mend.server.poses.bases import Bases
 from mend.server.poses.frame import Frame, encode
 from mend.server.poses.layout import RATE_HZ, Layout, lay_out
-from mend.server.poses.record import PoseRecord, PoseRecords, RecordedPoses
+from mend.server.poses.record import (
+    PoseRecord,
+    PoseRecords,
+    ReadFrames,
+    RecordedPoses,
+    no_frames,
+)
 from mend.server.runtime.run_state import RunState
 
 ShowPoses = Callable[[str, float], None]
@@ -209,6 +215,10 @@ class PoseSource(Protocol):
         self, run: UUID, from_s: float, to_s: float, limit: int
     ) -> RecordedPoses: ...
 
+    def all_recorded(self, run: UUID) -> AbstractAsyncContextManager[ReadFrames]:
+        """Has all recorded frames of a run read, a page after the other."""
+        ...
+
 
 class PoseFeed:
     """The poses of every run; implements `PoseSource`. Without `records` none are kept."""
@@ -260,6 +270,15 @@ class PoseFeed:
         if self._records is None:
             return RecordedPoses([], None)
         return await self._records.read(run, from_s, to_s, limit)
+
+    @asynccontextmanager
+    async def all_recorded(self, run: UUID) -> AsyncIterator[ReadFrames]:
+        """Has all recorded frames of a run read, a page after the other."""
+        if self._records is None:
+            yield no_frames
+            return
+        async with self._records.all_of(run) as read:
+            yield read
 
     def record(self, site: UUID) -> PoseRecord | None:
         """The record to which frames of a site are added, if any are kept."""

@@ -3,8 +3,9 @@
 import asyncio
 import logging
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -20,6 +21,9 @@ log = logging.getLogger(__name__)
 
 T = TypeVar("T")
 
+ReadFrames = Callable[[float], Awaitable[list[Frame]]]
+"""The next frames up to a time of the run's clock; none where there are none."""
+
 WriteLater = Callable[[Callable[[], None], Callable[[], None]], None]
 """Has the records' thread do the first, and then the second, whatever became of the first."""
 
@@ -27,6 +31,8 @@ MOST_BYTES = 32 * 1024 * 1024
 SHORTEST_INTERVAL_S = 0.049
 """Of the run's clock: no more than 20 frames per second are kept."""
 FLUSH_S = 1.0
+PAGE_BYTES = 128 * 1024
+"""So much of a record is read at a time."""
 MOST_WAITING = 4096
 """So many frames of a run may wait to be written; a disk that is slower than that loses some."""
 
@@ -37,6 +43,48 @@ class RecordedPoses:
 
     frames: Sequence[Frame]
     span_s: tuple[float, float] | None
+
+
+class RecordedFrames:
+    """The frames of a record from its beginning, read in pieces.
+
+    What is recorded meanwhile comes too, unless it is thinned out: then they are those of before.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = path.open("rb") if path.exists() else None
+        self._bytes = b""
+        self._waiting: deque[Frame] = deque()
+
+    def until(self, time_s: float) -> list[Frame]:
+        """The next frames up to a time of the run's clock, not all at once; none if there are none.
+
+        Raises `OSError`.
+        """
+        if not self._waiting:
+            self._read()
+        page: list[Frame] = []
+        while self._waiting and time_of(self._waiting[0]) <= time_s:
+            page.append(self._waiting.popleft())
+        return page
+
+    def _read(self) -> None:
+        while self._file is not None and not self._waiting:
+            read = self._file.read(PAGE_BYTES)
+            if not read:
+                return
+            self._bytes += read
+            self._waiting.extend(unframed(self._bytes))
+            self._bytes = self._bytes[len(framed(self._waiting)) :]
+
+    def close(self) -> None:
+        if self._file is not None:
+            self._file.close()
+
+
+async def no_frames(_time_s: float) -> list[Frame]:
+    """What there is to read where nothing is recorded."""
+    return []
 
 
 class PoseRecord:
@@ -145,15 +193,7 @@ class PoseRecords:
     async def layout(self, run: UUID) -> Layout | None:
         """The last layout of a run."""
         path = self._layout_path(run)
-
-        def read() -> Layout | None:
-            try:
-                return Layout.model_validate_json(path.read_bytes()) if path.exists() else None
-            except ValidationError:
-                # Of another version of Mend: what is only for display is not worth an upgrade.
-                return None
-
-        return await self._do(read)
+        return await self._do(lambda: read_layout(path))
 
     async def read(self, run: UUID, from_s: float, to_s: float, limit: int) -> RecordedPoses:
         """The frames of a span, evenly thinned out to `limit`."""
@@ -171,6 +211,17 @@ class PoseRecords:
             return RecordedPoses(chosen[::every], span_s)
 
         return await self._do(read)
+
+    @asynccontextmanager
+    async def all_of(self, run: UUID) -> AsyncIterator[ReadFrames]:
+        """Has the frames of a run read from the first on, a page after the other."""
+        if run in self._records:
+            self._records[run].flush()
+        frames = await self._do(lambda: RecordedFrames(self._path(run)))
+        try:
+            yield lambda time_s: self._do(lambda: frames.until(time_s))
+        finally:
+            frames.close()
 
     async def last(self, run: UUID) -> Frame | None:
         """The last frame of a run."""
@@ -190,10 +241,10 @@ class PoseRecords:
         self._thread.shutdown()
 
     def _path(self, run: UUID) -> Path:
-        return self._folder / f"{run}.poses"
+        return record_path(self._folder, run)
 
     def _layout_path(self, run: UUID) -> Path:
-        return self._folder / f"{run}.layout.json"
+        return layout_path(self._folder, run)
 
     def _do_later(self, work: Callable[[], None], then: Callable[[], None] = lambda: None) -> None:
         if not self._shut:
@@ -215,6 +266,25 @@ class PoseRecords:
         return await asyncio.get_running_loop().run_in_executor(
             self._thread, lambda: self._in_folder(work)
         )
+
+
+def record_path(folder: Path, run: UUID) -> Path:
+    """Where the frames of a run are."""
+    return folder / f"{run}.poses"
+
+
+def layout_path(folder: Path, run: UUID) -> Path:
+    """Where what they hold is told."""
+    return folder / f"{run}.layout.json"
+
+
+def read_layout(path: Path) -> Layout | None:
+    """A layout that was kept; None where there is none. Raises `OSError`."""
+    try:
+        return Layout.model_validate_json(path.read_bytes()) if path.exists() else None
+    except ValidationError:
+        # Of another version of Mend: what is only for display is not worth an upgrade.
+        return None
 
 
 def _without_torn_end(path: Path) -> int:

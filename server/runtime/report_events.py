@@ -100,6 +100,7 @@ class ReportEvents:
                 step=body.step,
                 step_name=body.name,
                 phase=body.phase,
+                object=self._context.state.tree.leaf_definition(execution.leaf).object,
             )
         ]
 

@@ -106,6 +106,13 @@ async def issues(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def statistics(service: Service, open_page: OpenPage) -> Page:
+    await service.journal.append(Entry(events=recorded_events()))
+    page = await open_page("/statistics")
+    await expect(page.get_by_role("region", name="By part")).to_be_visible()
+    return page
+
+
 async def live_run(service: Service, open_page: OpenPage) -> Page:
     run = await ask(service)
     page = await open_page(f"/runs/{run}")
@@ -197,6 +204,26 @@ async def taken_leaf(service: Service, open_page: OpenPage) -> Page:
         await page.get_by_role("button", name="Say it").click()
     await expect(page.get_by_text("'red_box' cannot be taken now")).to_be_visible()
     await expect(page.get_by_text("You are doing blue box")).to_be_visible()
+    return page
+
+
+async def past_of_run(service: Service, open_page: OpenPage) -> Page:
+    page = await finished_run(service, open_page)
+    await page.get_by_role("button", name="Previous fault").click()
+    await expect(page.get_by_role("button", name="Copy link")).to_be_visible()
+    return page
+
+
+async def plotted_run(service: Service, open_page: OpenPage) -> Page:
+    page = await finished_run(service, open_page)
+    if await page.get_by_role("tab", name="Timeline").is_visible():
+        await page.get_by_role("tab", name="Timeline").click()
+    await page.get_by_role("button", name="Plots", exact=True).click()
+    for number in ("node started: attempt", "gripper: opening"):
+        await page.get_by_label("Number to plot").select_option(label=number)
+        await expect(page.get_by_role("slider", name=number)).to_be_visible()
+    attempts = page.get_by_role("region", name="node started: attempt")
+    await attempts.get_by_role("button", name="As a table").click()
     return page
 
 
@@ -369,10 +396,13 @@ SITUATIONS: dict[str, Situation] = {
         no_runs,
         runs,
         issues,
+        statistics,
         live_run,
         run_in_building,
         taken_leaf,
         finished_run,
+        past_of_run,
+        plotted_run,
         trees,
         wrong_tree,
         delete_tree,

@@ -1,5 +1,6 @@
 """Any moment of a run that has ended: its tree, its transcript and its choices."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -235,3 +236,48 @@ async def test_a_link_leads_others_to_the_same_moment(
     await expect(other.get_by_text("You are looking at")).to_have_text(told)
     await shown.page.get_by_role("button", name="To the end").click()
     await shown.page.wait_for_url(lambda url: "?" not in url)
+
+
+async def test_buttons_and_keys_go_from_fault_to_fault(
+    service: Service, open_page: OpenPage
+) -> None:
+    shown = await replay(service, open_page)
+    raised = [each for each in shown.events if isinstance(each, ev.IssueRaised)]
+    before = shown.page.get_by_role("button", name="Previous fault")
+    after = shown.page.get_by_role("button", name="Next fault")
+    await expect(after).to_be_disabled()
+    for fault in reversed(raised):
+        await before.click()
+        past = [each for each in shown.events if each.seq <= fault.seq]
+        await wait_for_tree(shown.page, await told_after(folded(past)))
+    await expect(before).to_be_disabled()
+    await shown.page.get_by_role("tree").focus()
+    await shown.page.keyboard.press("Shift+ArrowRight")
+    past = [each for each in shown.events if each.seq <= raised[1].seq]
+    await wait_for_tree(shown.page, await told_after(folded(past)))
+    await expect(shown.page.get_by_role("region", name="Choice")).to_contain_text(
+        raised[1].name.replace("_", " ")
+    )
+    await shown.slider.focus()
+    await shown.page.keyboard.press("Shift+ArrowLeft")
+    past = [each for each in shown.events if each.seq <= raised[0].seq]
+    await wait_for_tree(shown.page, await told_after(folded(past)))
+    # A link to it shows it, though the address has tenths of seconds alone.
+    linked_s = math.ceil(raised[0].time * 10) / 10
+    await shown.page.wait_for_url(f"**/runs/*?t={linked_s:.1f}")
+    await shown.page.reload()
+    past = [each for each in shown.events if each.time <= linked_s]
+    assert raised[0] in past
+    await wait_for_tree(shown.page, await told_after(folded(past)))
+
+
+@pytest.mark.parametrize("form", ["csv", "mcap"])
+async def test_a_run_is_kept_as_a_file(service: Service, open_page: OpenPage, form: str) -> None:
+    shown = await replay(service, open_page)
+    link = shown.page.get_by_role("group", name="Export").get_by_role("link", name=form.upper())
+    async with shown.page.expect_download() as download:
+        await link.click()
+    file = await download.value
+    assert file.suggested_filename.startswith("eket-2026")
+    assert file.suggested_filename.endswith(f".{form}")
+    assert (await file.path()).stat().st_size > 10_000

@@ -1,5 +1,6 @@
 """The command line: what it prints, where, and with which exit code."""
 
+import csv
 import json
 import os
 import signal
@@ -16,7 +17,9 @@ import cv2
 import httpx
 import numpy as np
 import pytest
+from mcap.reader import make_reader
 from recorded_service import RecordedService, recorded_events
+from shown_run import hello, poses, run_state
 
 from mend.server.cli import main
 from mend.server.cli.check import kind_of_file
@@ -25,6 +28,9 @@ from mend.server.documents import DocumentKind
 from mend.server.journal import events as ev
 from mend.server.journal.reader import JournalReader
 from mend.server.journal.sqlite import SqliteJournal
+from mend.server.poses.frame import encode, framed
+from mend.server.poses.layout import lay_out
+from mend.server.poses.record import layout_path, record_path
 from mend.tasks.library import TREES
 
 SCENE = """\
@@ -509,6 +515,53 @@ def test_replay_takes_the_beginning_of_an_id_and_writes_the_report(
         range(1, len(recorded_events()) + 1)
     )
     assert "data:image/jpeg;base64" in report.read_text()
+
+
+@pytest.mark.parametrize("form", ["csv", "mcap"])
+def test_export_writes_a_run_as_a_file(
+    mend: Mend, service: Callable[..., RecordedService], tmp_path: Path, form: str
+) -> None:
+    run = played(mend, service)
+    path = tmp_path / "deep" / f"run.{form}"
+    outcome = mend("export", run[:6], "--format", form, "--output", str(path))
+    assert (outcome.code, outcome.out) == (0, f"{path}\n")
+    numbers = list(range(1, len(recorded_events()) + 1))
+    if form == "csv":
+        rows = csv.DictReader(path.read_text().splitlines())
+        assert [int(row["seq"]) for row in rows] == numbers
+    else:
+        with path.open("rb") as file:
+            read = list(make_reader(file).iter_messages(topics=["/events"]))
+        assert [json.loads(message.data)["seq"] for _, _, message in read] == numbers
+    assert [each.name for each in path.parent.iterdir()] == [path.name]
+
+
+def test_export_has_where_everything_was_recorded_to_be(
+    mend: Mend, service: Callable[..., RecordedService], tmp_path: Path, data_dir: Path
+) -> None:
+    run = UUID(played(mend, service))
+    [journal] = (data_dir / "runs").glob("*.sqlite")
+    shows = hello().shows
+    assert shows is not None
+    poses_of = journal.with_suffix(".poses")
+    poses_of.mkdir()
+    layout_path(poses_of, run).write_text(
+        lay_out(run_state(run), hello(), shows, None).model_dump_json()
+    )
+    record_path(poses_of, run).write_bytes(framed([encode(0, 1.0, poses())]))
+    path = tmp_path / "run.mcap"
+    assert mend("export", str(run), "--format", "mcap", "-o", str(path)).code == 0
+    with path.open("rb") as file:
+        topics = {channel.topic for _, channel, _ in make_reader(file).iter_messages()}
+    assert {"/tf", "/scene", "/joints"} <= topics
+
+
+def test_export_of_a_run_that_there_is_not_writes_nothing(mend: Mend, tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    outcome = mend("export", "abc", "--format", "csv", "-o", str(path))
+    assert outcome.code == 2
+    assert "there is no run 'abc'" in outcome.err
+    assert not path.exists()
 
 
 def test_replay_asks_for_more_of_an_id_that_fits_several_runs(

@@ -68,6 +68,7 @@ ADDED_SINCE: dict[str, set[str]] = {
     "v4": {*OF_NO_RUN, *OF_PROMISES, "node_taken", "looked_anew", "way_found"},
     "v5": {*OF_NO_RUN, *OF_PROMISES, "node_taken", "looked_anew", "way_found"},
     "v6": {*OF_NO_RUN},
+    "v7": {*OF_NO_RUN},
 }
 """The types of events that came after a sample was written."""
 

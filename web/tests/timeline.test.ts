@@ -35,6 +35,20 @@ describe("lanes", () => {
     expect(cut.find((lane) => lane.kind === "dialogues")?.items.at(-1)?.end).toBe(50);
   });
 
+  it("have one for lost robots where one was, each until it is back or the run is over", () => {
+    const [begun] = events;
+    const at = (type: "robot_lost" | "robot_back" | "run_failed", time: number) =>
+      ({ ...begun, type, time, seq: 1000 + time, robot: "pr2-1", reason: "no word", boot: "b", continues: true, node: null }) as unknown as Told;
+    const lost = (more: readonly Told[]) =>
+      lanesOf([...events.slice(0, 1), ...more], 50).find(({ kind }) => kind === "lost")?.items.map(({ start, end }) => [start, end]);
+    expect(lost([])).toBeUndefined();
+    expect(lost([at("robot_lost", 3)])).toEqual([[3, 50]]);
+    expect(lost([at("robot_lost", 3), at("robot_back", 8), at("robot_lost", 9), at("run_failed", 20)])).toEqual([
+      [3, 8],
+      [9, 20],
+    ]);
+  });
+
   it("put one step after the other", () => {
     for (const item of lanesOf(events, 100)[0]?.items ?? []) {
       for (const [index, step] of item.parts.slice(1).entries()) {

@@ -53,7 +53,8 @@ class NodeTaken(NodeEvent):
 class StepStarted(NodeEvent):
     """A behavior's step has begun (1 is the first).
 
-    `phase`: what it is for, as the robot says; None in the journals of an older Mend.
+    `phase`: what it is for, as the robot says, and `object` what its leaf handles; both None in the
+    journals of an older Mend.
     """
 
     type: Literal["step_started"] = "step_started"
@@ -62,6 +63,7 @@ class StepStarted(NodeEvent):
     step: int
     step_name: str
     phase: str | None = None
+    object: str | None = None
 
 
 class IssueRaised(NodeEvent):

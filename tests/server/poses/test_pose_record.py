@@ -1,17 +1,19 @@
 """Recorded poses: thinned to twenty a second and to a bounded size, whole again after a kill."""
 
 import asyncio
+import math
 import threading
 from collections.abc import AsyncIterator
 from pathlib import Path
+from uuid import UUID
 
 import pytest
 from sample_events import RUN
 from shown_run import hello, poses, run_state
 
-from mend.server.poses.frame import Frame, encode, time_of
+from mend.server.poses.frame import Frame, encode, framed, time_of
 from mend.server.poses.layout import lay_out
-from mend.server.poses.record import MOST_WAITING, PoseRecords
+from mend.server.poses.record import MOST_WAITING, PAGE_BYTES, PoseRecords
 
 ALL = (0.0, 1e9, 100_000)
 
@@ -40,6 +42,26 @@ async def test_frames_are_read_in_order_before_and_after_the_end_of_the_run(
     assert list(read.frames) == frames
     assert read.span_s == (0.0, 2.9)
     assert await records.last(RUN) == frames[-1]
+
+
+async def test_all_frames_are_read_in_pieces_up_to_one_time_after_the_other(
+    records: PoseRecords,
+) -> None:
+    record = records.open(RUN)
+    frames = [frame(step / 10) for step in range(3000)]
+    for each in frames:
+        record.add(each)
+    async with records.all_of(RUN) as read:
+        assert await read(-1.0) == []
+        assert await read(1.0) == frames[:11]
+        assert await read(1.0) == []
+        rest = []
+        while page := await read(math.inf):
+            rest += page
+        assert rest == frames[11:]
+        assert len(framed(frames)) > 2 * PAGE_BYTES
+    async with records.all_of(UUID(int=1)) as read:
+        assert await read(math.inf) == []
 
 
 async def test_nothing_is_recorded_of_a_run_that_showed_nothing(records: PoseRecords) -> None:

@@ -182,7 +182,8 @@ async def test_a_run_that_can_be_read_again_goes_on(path: Path, interrupted: UUI
 
 
 async def test_an_older_journal_is_indexed_as_it_is_opened(path: Path, interrupted: UUID) -> None:
-    for table in ("runs", "dialogues", "batches", "pruning", "pruned", "requests", "issues"):
+    added = ("runs", "dialogues", "batches", "pruning", "pruned", "requests", "issues")
+    for table in (*added, "picks", "questions"):
         alter(path, f"DROP TABLE {table}")
     alter(path, "ALTER TABLE receipts DROP COLUMN time")
     alter(path, "DELETE FROM schema_version WHERE version >= 3")

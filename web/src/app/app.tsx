@@ -17,6 +17,7 @@ import "./app.css";
 const RunView = later(() => import("../run/run_view").then((module) => module.RunView));
 const RunsView = later(() => import("../run/runs_view").then((module) => module.RunsView));
 const IssuesView = later(() => import("../issues/issues_view").then((module) => module.IssuesView));
+const StatisticsView = later(() => import("../statistics/statistics_view").then((module) => module.StatisticsView));
 const TreesView = later(() => import("../trees/trees_view").then((module) => module.TreesView));
 const TreeEditor = later(() => import("../trees/tree_editor").then((module) => module.TreeEditor));
 const StartRun = later(() => import("../run/start/start_run").then((module) => module.StartRun));
@@ -71,6 +72,8 @@ function View({ shown }: { shown: Exclude<Route, { view: "touch" }> }) {
       return <IssuesView />;
     case "run":
       return <RunView key={shown.run} run={shown.run} />;
+    case "statistics":
+      return <StatisticsView />;
     case "trees":
       return <TreesView tree={null} />;
     case "tree":

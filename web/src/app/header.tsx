@@ -38,7 +38,7 @@ export function Header() {
         <Place href="/runs" current={view === "runs" || view === "run" || view === "start"}>
           Runs
         </Place>
-        <Place href="/issues" current={view === "issues"}>
+        <Place href="/issues" current={view === "issues" || view === "statistics"}>
           Issues
         </Place>
         <Place href="/trees" current={view === "trees" || view === "tree" || view === "edit"}>

@@ -5,6 +5,7 @@ export type Route =
   | { view: "questions" }
   | { view: "runs" }
   | { view: "issues" }
+  | { view: "statistics" }
   | { view: "run"; run: string }
   | { view: "trees" }
   | { view: "tree"; tree: string }
@@ -16,9 +17,9 @@ export type Route =
   | { view: "settings" }
   | { view: "unknown"; path: string };
 
-type Page = "runs" | "issues" | "trees" | "requests" | "settings";
+type Page = "runs" | "issues" | "statistics" | "trees" | "requests" | "settings";
 
-const PAGES: ReadonlySet<Page> = new Set<Page>(["runs", "issues", "trees", "requests", "settings"]);
+const PAGES: ReadonlySet<Page> = new Set<Page>(["runs", "issues", "statistics", "trees", "requests", "settings"]);
 
 const path = signal(location.pathname);
 

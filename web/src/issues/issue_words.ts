@@ -1,4 +1,5 @@
 // How the console says what an issue was, and how it ended.
+import { withMoment } from "../run/moment_in_address";
 import type { IssueSummary } from "../wire/types";
 
 type Outcome = NonNullable<IssueSummary["outcome"]>;
@@ -19,5 +20,5 @@ export function outcomeOf({ outcome, dialogue }: IssueSummary): string {
 
 /** Where the console shows an issue: its run at the moment just after it was raised. */
 export function momentOf({ run, time }: IssueSummary): string {
-  return `/runs/${run}?t=${(Math.ceil(time * 10) / 10).toFixed(1)}`;
+  return withMoment(`/runs/${run}`, time);
 }

@@ -1,7 +1,6 @@
 // What robots noticed, newest first: found by its part, robot or task tree, and opened at its moment.
-import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
-import { ANYTHING, isAnything, queryOf } from "../run/search";
+import { isAnything, queryOf } from "../run/search";
 import { SearchFields } from "../run/search_fields";
 import { ago, clock, moment } from "../run/run_words";
 import { useSettled } from "../run/use_settled";
@@ -10,12 +9,8 @@ import { plain, withoutRun } from "../tree/words";
 import type { IssueSummary } from "../wire/types";
 import { momentOf, outcomeOf } from "./issue_words";
 import { useIssuesPage } from "./issues_page";
+import { pages, search, searchIssues } from "./issues_search";
 import "./issues.css";
-
-/** Chosen once, kept while one looks at an issue and comes back. */
-const search = signal(ANYTHING);
-/** After which issue each page begins; the newest has none. */
-const pages = signal<readonly (number | null)[]>([null]);
 
 export function IssuesView() {
   const query = useSettled(queryOf(search.value).toString());
@@ -24,14 +19,16 @@ export function IssuesView() {
   const none = issues !== null && issues.length === 0;
   return (
     <section class="page">
-      <h1>Issues</h1>
+      <div class="page-head">
+        <h1>Issues</h1>
+        <a class="button" href="/statistics">
+          Statistics
+        </a>
+      </div>
       <SearchFields
         search={search.value}
         hint="Part, place, robot, kind of issue, task tree"
-        onSearch={(wanted) => {
-          search.value = wanted;
-          pages.value = [null];
-        }}
+        onSearch={searchIssues}
       />
       <p class="mistake" role="alert">
         {failure}

@@ -12,9 +12,14 @@ export function momentIn(search: string): number | null {
   return Number.isFinite(time) && time >= 0 ? time : null;
 }
 
-/** An address with a moment in it, to a tenth of a second; without one for null. */
+/** An address with a moment in it, to a tenth of a second; without one for null.
+ *
+ * What has happened at that moment has happened at the one in the address, which is never before it.
+ */
 export function withMoment(path: string, time: number | null): string {
-  return time === null ? path : `${path}?${KEY}=${(Math.floor(time * 10) / 10).toFixed(1)}`;
+  if (time === null) return path;
+  const nearest = Math.round(time * 10);
+  return `${path}?${KEY}=${((nearest / 10 < time ? nearest + 1 : nearest) / 10).toFixed(1)}`;
 }
 
 /** Go to the moment in the address once all was read; from then on the address tells the moment shown. */

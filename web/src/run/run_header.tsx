@@ -4,6 +4,7 @@ import { Confirm } from "../app/confirm";
 import { may, whyNot } from "../state/access";
 import { plain } from "../tree/words";
 import * as rest from "../wire/rest";
+
 import { ended, type RunState } from "./fold";
 import type { Moment } from "./moment";
 import { RunAgain } from "./run_again";
@@ -47,6 +48,14 @@ export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment
         <a class="button" href={`/api/runs/${started.run}/report`} download>
           Report
         </a>
+        <span class="run-exports" role="group" aria-label="Export">
+          <a class="button" href={rest.exportPath(started.run, "csv")} title="Its events as a table" download>
+            CSV
+          </a>
+          <a class="button" href={rest.exportPath(started.run, "mcap")} title="Events, poses and pictures for Foxglove" download>
+            MCAP
+          </a>
+        </span>
         {ended(status) && may("operator") && <RunAgain started={started} />}
         {!ended(status) && <RunControls run={started.run} paused={status === "paused"} />}
       </div>

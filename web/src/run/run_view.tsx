@@ -16,6 +16,8 @@ import { ChoicePanel } from "./choice_panel";
 import { DialogueNow } from "./dialogue_now";
 import { ended, nodeViews, type RunState } from "./fold";
 import { Leaves } from "./leaves";
+import { faultBeside } from "./faults";
+import { useFaultKeys } from "./fault_keys";
 import { doersOf } from "./leaf_words";
 import { useMomentInAddress } from "./moment_in_address";
 import { openRun, type RunFeed } from "./run_feed";
@@ -29,6 +31,8 @@ import { usePlaying } from "./use_playing";
 import "./run.css";
 
 const ScenePanel = later(() => import("./scene/scene_panel").then((module) => module.ScenePanel));
+
+const Plots = later(() => import("./plots/plots").then((module) => module.Plots));
 
 const PlanPanel = later(() => import("../building/plan_panel").then((module) => module.PlanPanel));
 
@@ -117,6 +121,20 @@ function Shown({ feed, version, state, latest }: ShownProps) {
     },
     [history, moment, goToEvent],
   );
+  // At the end that is the last event, which may itself be a fault.
+  const shownSeq = newest ? Infinity : state.seq;
+  const goToFault = useCallback(
+    (direction: -1 | 1) => {
+      const fault = faultBeside(history.events, shownSeq, direction);
+      if (fault === null) return;
+      if (fault.type !== "robot_lost") setSelected(fault.node);
+      goToEvent(fault);
+    },
+    [history, shownSeq, goToEvent],
+  );
+  useFaultKeys(goToFault);
+  const faultSteps = (direction: -1 | 1) =>
+    faultBeside(history.events, shownSeq, direction) === null ? null : () => goToFault(direction);
   const views = useMemo(
     () => nodeViews(state),
     [state.leaves, state.abandoned, state.potentials, state.status],
@@ -154,8 +172,10 @@ function Shown({ feed, version, state, latest }: ShownProps) {
     </div>
   );
   const timeline = useMemo(
-    () => <TimelinePanel feed={feed} version={version} onSelect={setSelected} onGoTo={goToEvent} />,
-    [feed, version, goToEvent],
+    () => (
+      <TimelinePanel run={state.started.run} feed={feed} version={version} onSelect={setSelected} onGoTo={goToEvent} />
+    ),
+    [state.started.run, feed, version, goToEvent],
   );
   const { scene } = state.started;
   const plan = useMemo(() => planOf(scene), [scene]);
@@ -206,7 +226,12 @@ function Shown({ feed, version, state, latest }: ShownProps) {
           </div>
         </>
       )}
-      <Scrubber moment={moment} going={!ended(latest.status)} onStep={step} />
+      <Scrubber
+        moment={moment}
+        going={!ended(latest.status)}
+        onStep={step}
+        faults={{ before: faultSteps(-1), after: faultSteps(1) }}
+      />
     </div>
   );
 }
@@ -280,24 +305,37 @@ function useChoices(feed: RunFeed, state: RunState, selected: string | null): re
 }
 
 interface TimelinePanelProps {
+  run: string;
   feed: RunFeed;
   version: number;
   onSelect: (path: string) => void;
   onGoTo: (event: { seq: number; time: number }) => void;
 }
 
-function TimelinePanel({ feed, version, onSelect, onGoTo }: TimelinePanelProps) {
+function TimelinePanel({ run, feed, version, onSelect, onGoTo }: TimelinePanelProps) {
   const { history, moment } = feed;
   // Not every frame of poses: the lanes grow in steps that nobody sees.
   const end = useComputed(() => Math.ceil(moment.end.value / LANE_STEP_S) * LANE_STEP_S).value;
   const lanes = useMemo(() => lanesOf(history.events, end), [history, version, end]);
+  const [plotted, setPlotted] = useState(false);
   const choose = (item: TimelineItem) => {
     if (item.node !== null) onSelect(item.node);
     onGoTo({ seq: item.seq, time: item.start });
   };
   return (
     <div class="panel run-timeline">
-      <Timeline lanes={lanes} end={end} moment={moment} onChoose={choose} />
+      <Timeline
+        lanes={lanes}
+        end={end}
+        moment={moment}
+        onChoose={choose}
+        more={
+          <button type="button" class="small-button" aria-expanded={plotted} onClick={() => setPlotted(!plotted)}>
+            Plots
+          </button>
+        }
+      />
+      {plotted && <Plots run={run} history={history} version={version} end={end} moment={moment} />}
     </div>
   );
 }

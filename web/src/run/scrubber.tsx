@@ -16,9 +16,16 @@ interface ScrubberProps {
   going: boolean;
   /** Go to the event before or after the moment. */
   onStep: (direction: -1 | 1) => void;
+  faults?: FaultSteps;
 }
 
-export function Scrubber({ of = "the run", moment, going, onStep }: ScrubberProps) {
+/** Going from fault to fault; null where there is none that way. */
+interface FaultSteps {
+  before: (() => void) | null;
+  after: (() => void) | null;
+}
+
+export function Scrubber({ of = "the run", moment, going, onStep, faults }: ScrubberProps) {
   const time = moment.time.value;
   const end = moment.end.value;
   const newest = moment.newest.value;
@@ -28,6 +35,7 @@ export function Scrubber({ of = "the run", moment, going, onStep }: ScrubberProp
   return (
     <section class={`scrubber ${newest ? "newest" : "past"}`} aria-label="Moment">
       <div class="scrubber-buttons">
+        {faults && <FaultButton name="Previous fault" keys="Shift+ArrowLeft" d={FAULT_BEFORE} go={faults.before} />}
         <button type="button" class="bare icon-button" aria-label="One event back" onClick={() => onStep(-1)}>
           <Icon d="M14 4l-8 6 8 6zM4 4v12" />
         </button>
@@ -42,6 +50,7 @@ export function Scrubber({ of = "the run", moment, going, onStep }: ScrubberProp
         <button type="button" class="bare icon-button" aria-label="One event on" disabled={newest} onClick={() => onStep(1)}>
           <Icon d="M6 4l8 6-8 6zM16 4v12" />
         </button>
+        {faults && <FaultButton name="Next fault" keys="Shift+ArrowRight" d={FAULT_AFTER} go={faults.after} />}
       </div>
       <input
         type="range"
@@ -88,6 +97,25 @@ export function Scrubber({ of = "the run", moment, going, onStep }: ScrubberProp
   );
 }
 
+const FAULT_BEFORE = "M2 10l3-2.5v5zM14 5l4.5 9h-9z";
+const FAULT_AFTER = "M18 10l-3-2.5v5zM6 5l4.5 9h-9z";
+
+function FaultButton({ name, keys, d, go }: { name: string; keys: string; d: string; go: (() => void) | null }) {
+  return (
+    <button
+      type="button"
+      class="bare icon-button"
+      aria-label={name}
+      aria-keyshortcuts={keys}
+      title={`${name} (${keys.replace("Arrow", "").replace("Left", "←").replace("Right", "→")})`}
+      aria-disabled={go === null}
+      onClick={() => go?.()}
+    >
+      <Icon d={d} />
+    </button>
+  );
+}
+
 function Icon({ d }: { d: string }) {
   return (
     <svg viewBox="0 0 20 20" width="20" height="20" aria-hidden="true">
@@ -102,6 +130,8 @@ function Where({ going }: { going: boolean }) {
   return connection.value === "connected" ? <b class="live">Live</b> : <b>Not connected, last seen</b>;
 }
 
+const LINK = "M8 12l4-4M9 6l2-2a3.5 3.5 0 0 1 5 5l-2 2M11 14l-2 2a3.5 3.5 0 0 1-5-5l2-2";
+
 function CopyLink({ time }: { time: number }) {
   const [copied, setCopied] = useState<number | null>(null);
   const copy = () =>
@@ -109,11 +139,13 @@ function CopyLink({ time }: { time: number }) {
       () => setCopied(time),
       () => setCopied(null),
     );
+  const words = copied === time ? "Link copied" : "Copy link";
   // Pages that came over plain http from elsewhere have no clipboard; the address says the same.
   if (navigator.clipboard === undefined) return null;
   return (
-    <button type="button" class="button" onClick={() => void copy()}>
-      {copied === time ? "Link copied" : "Copy link"}
+    <button type="button" class="button scrubber-copy" aria-label={words} onClick={() => void copy()}>
+      <Icon d={copied === time ? "M4 10l4 4 8-9-8 9z" : LINK} />
+      <span>{words}</span>
     </button>
   );
 }

@@ -25,6 +25,7 @@ import type {
   SessionView,
   SiteView,
   SpeechView,
+  Statistics,
   TrialView,
   UnderstoodView,
   DeviceView,
@@ -123,6 +124,7 @@ export const issues = (wanted: string, before: number | null, limit: number) => 
   if (before !== null) query.set("before", String(before));
   return call<IssueSummary[]>("GET", `/api/issues?${query}`);
 };
+export const statistics = (query: string) => call<Statistics>("GET", `/api/statistics?${query}`);
 export const run = (id: string) => call<RunView>("GET", `/api/runs/${segment(id)}`);
 export const startRun = (request: RunRequest) => call<RunSummary>("POST", "/api/runs", request);
 export const pauseRun = (id: string) => call<RunSummary>("POST", `/api/runs/${segment(id)}/pause`);
@@ -246,6 +248,7 @@ export const checkTree = (text: string, signal: AbortSignal) =>
   call<DocumentCheck>("POST", "/api/trees/check", { text }, { signal });
 export const deleteTree = (name: string) => call<void>("DELETE", `/api/trees/${segment(name)}`);
 
+export const exportPath = (run: string, format: "csv" | "mcap") => `/api/runs/${segment(run)}/export?format=${format}`;
 export const picturePath = (picture: string) => `/api/pictures/${segment(picture)}`;
 export const cameraPath = (run: string, camera: string) =>
   `/api/runs/${segment(run)}/cameras/${segment(camera)}`;

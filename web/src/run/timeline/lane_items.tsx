@@ -1,6 +1,6 @@
 // The things on one lane: bars for what takes time, marks for what happens at once.
 import { clock } from "../run_words";
-import type { Lane, TimelineItem } from "./lanes";
+import type { Lane, LaneKind, TimelineItem } from "./lanes";
 import type { Scale } from "./span";
 import type { Walk } from "./walk";
 
@@ -10,6 +10,9 @@ const STEP_PX = 5;
 /** More things than this, each with less room than that, are drawn as one. */
 const CROWD = 60;
 const CROWDED_PX = 12;
+
+/** What is on these lanes takes time. */
+const BARS: ReadonlySet<LaneKind> = new Set<LaneKind>(["steps", "lost", "dialogues"]);
 
 interface LaneItemsProps {
   lane: Lane;
@@ -52,7 +55,7 @@ export function LaneItems({ lane, scale, height, walk, onChoose }: LaneItemsProp
             }}
           >
             <title>{`${clock(item.start)}: ${item.title}`}</title>
-            {lane.kind === "steps" || lane.kind === "dialogues" ? (
+            {BARS.has(lane.kind) ? (
               <Bar item={item} left={left} right={right} room={room} height={height} scale={scale} />
             ) : (
               <Mark item={item} x={left} height={height} room={room} />

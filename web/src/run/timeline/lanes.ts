@@ -1,10 +1,10 @@
 // What stands on the lanes of a run's timeline.
-import { plain } from "../../tree/words";
-import type { DialogueClosed, Event, NodeDone, NodeLeftOut, NodeReset, Resolution } from "../../wire/types";
+import { plain, withoutRun } from "../../tree/words";
+import type { DialogueClosed, Event, NodeDone, NodeLeftOut, NodeReset, Resolution, RobotBack } from "../../wire/types";
 import type { Told } from "../../wire/told";
 import { lastOf } from "../transcript_lines";
 
-export type LaneKind = "steps" | "faults" | "dialogues" | "people" | "resolutions";
+export type LaneKind = "steps" | "faults" | "lost" | "dialogues" | "people" | "resolutions";
 
 /** One thing on a lane; `start` equals `end` for what takes no time. Seconds of the run's clock. */
 export interface TimelineItem {
@@ -49,9 +49,16 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
   const started = events[0];
   if (started?.type !== "run_started") return [];
   const steps = new Map<string, Growing[]>(started.robots.map((robot) => [robot, []]));
-  const lanes: Record<Exclude<LaneKind, "steps">, Growing[]> = { faults: [], dialogues: [], people: [], resolutions: [] };
+  const lanes: Record<Exclude<LaneKind, "steps">, Growing[]> = {
+    faults: [],
+    lost: [],
+    dialogues: [],
+    people: [],
+    resolutions: [],
+  };
   const running = new Map<string, Growing>();
   const open = new Map<string, Growing>();
+  const away = new Map<string, Growing>();
   for (const event of events) {
     switch (event.type) {
       case "node_started": {
@@ -84,6 +91,22 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
         lanes.faults.push(point(event, plain(event.issue), `${plain(event.issue)}, ${about}`, "fault", event.node));
         break;
       }
+      case "robot_lost": {
+        const robot = withoutRun(event.robot);
+        if (away.has(event.robot)) break;
+        const item = bar(event, now, robot, `${robot} is lost: ${event.reason}`, "lost", null);
+        away.set(event.robot, item);
+        lanes.lost.push(item);
+        break;
+      }
+      case "robot_back":
+        comeBack(away, event);
+        break;
+      case "run_finished":
+      case "run_failed":
+      case "run_aborted":
+        for (const item of away.values()) item.end = event.time;
+        break;
       case "dialogue_opened": {
         const title = `dialogue about ${plain(event.issue)}, ${plain(event.object ?? event.name)}`;
         const item = bar(event, now, plain(event.object ?? event.name), title, "dialogue", event.node);
@@ -118,6 +141,7 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
   return [
     ...[...steps].map(([robot, items]): Lane => ({ kind: "steps", name: several ? robot : "Steps", items })),
     { kind: "faults", name: "Faults", items: lanes.faults },
+    ...(lanes.lost.length > 0 ? [{ kind: "lost", name: "Robot lost", items: lanes.lost } as const] : []),
     { kind: "dialogues", name: "Dialogues", items: lanes.dialogues },
     { kind: "people", name: "People", items: lanes.people },
     { kind: "resolutions", name: "Resolutions", items: lanes.resolutions },
@@ -154,6 +178,14 @@ function closeDialogue(open: Map<string, Growing>, event: DialogueClosed): void 
   open.delete(event.dialogue);
   item.end = event.time;
   item.title += `, ${plain(event.reason)}`;
+}
+
+function comeBack(away: Map<string, Growing>, event: RobotBack): void {
+  const item = away.get(event.robot);
+  if (item === undefined) return;
+  away.delete(event.robot);
+  item.end = event.time;
+  item.title += ", and back";
 }
 
 /** From so many seconds on people count in minutes and hours. */

@@ -9,6 +9,7 @@ const AT_ONCE = 200;
 const KIND_WORDS: Readonly<Record<LaneKind, string>> = {
   steps: "Start",
   faults: "Fault",
+  lost: "Robot lost",
   dialogues: "Dialogue",
   people: "Person",
   resolutions: "Resolution",

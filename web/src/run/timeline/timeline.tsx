@@ -1,4 +1,5 @@
 // The timeline of a run: lanes over its clock, to be looked at closely and to jump from.
+import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
 import type { Moment } from "../moment";
 import type { Lane, TimelineItem } from "./lanes";
@@ -13,6 +14,8 @@ interface TimelineProps {
   end: number;
   moment: Moment;
   onChoose: (item: TimelineItem) => void;
+  /** More that can be done about it, beside its title. */
+  more?: ComponentChildren;
 }
 
 export function Timeline(props: TimelineProps) {
@@ -26,6 +29,7 @@ export function Timeline(props: TimelineProps) {
     <section class="timeline" aria-label="Timeline">
       <div class="panel-bar">
         <h2>Timeline</h2>
+        {props.more}
         <button type="button" class="small-button" aria-pressed={asList} onClick={() => setAsList(!asList)}>
           Events as a list
         </button>
