@@ -11,8 +11,10 @@ from sampled import sample
 
 from mend.tasks.library import TREES
 
-LEFT = {"workshop": 3, "kit": 2, "tea_table": 3}
+LEFT = {"workshop": 2, "kit": 2, "tea_table": 2}
 ALL = 1000
+IN_THE_WORKCELL = sample(("kit", "tea_table", "tower"), TREES.names())
+"""The paper's scenario builds `eket` there too (`test_paper_scenario.py`)."""
 
 
 @pytest.mark.slow(2)
@@ -24,7 +26,7 @@ async def test_a_shipped_task_is_done_on_the_tabletop(task: str) -> None:
 
 
 @pytest.mark.slow(8)
-@pytest.mark.parametrize("task", TREES.names())
+@pytest.mark.parametrize("task", IN_THE_WORKCELL)
 async def test_a_shipped_task_is_done_in_the_workcell(task: str) -> None:
     pytest.importorskip("pybullet")
     left = sample(LEFT.get(task, ALL), ALL)
