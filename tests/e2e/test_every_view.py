@@ -30,7 +30,7 @@ LOOKED_AT: Sequence[tuple[ViewportSize, Themes]] = [
     *(
         # Tall: all of a page is looked at, and not only what the chance of scrolling shows of it.
         (ViewportSize(width=width, height=TALL), themes)
-        for width, themes in zip(WIDTHS, (NEITHER, sample(NEITHER, BOTH), BOTH), strict=True)
+        for width, themes in zip(WIDTHS, (NEITHER, sample(("light",), BOTH), BOTH), strict=True)
     ),
 ]
 
