@@ -8,7 +8,7 @@ READY := $(VENV)/.ready
 # Much is done by processes that begin anew: each would compile every module once more.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup demo demo-building types console screenshots serve test console-tests arm-kernels building-kernels fleet-kernels test-modules steady lint bench lock sbom clean
+.PHONY: help setup demo demo-building types console screenshots serve test console-tests arm-kernels building-kernels fleet-kernels steady lint bench lock sbom clean
 
 help:  ## Say what there is
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 10
@@ -55,18 +55,24 @@ serve: console  ## The service with the helper console on http://127.0.0.1:8080
 screenshots: console  ## The console's pictures in docs/images, from situations that are played
 	$(BIN)/python scripts/screenshots.py
 
-test: console  ## Every test, in random order; one in a browser that fails is run once more
-	@# The kernels and the tests are compiled once here, not by many processes at a time.
-	$(MAKE) --no-print-directory -j -O arm-kernels building-kernels fleet-kernels
-	$(MAKE) --no-print-directory -j -O console-tests test-modules
+test: console $(VENV)/.kernels  ## Every test, in random order; one in a browser that fails is run once more
+	$(MAKE) --no-print-directory -j -O console-tests $(VENV)/.test-modules
 	@command -v chromium google-chrome >/dev/null || echo 'There is no Chromium on this machine: the tests in a browser are skipped.'
 	$(BIN)/python scripts/run_tests.py
 
 console-tests:
 	cd web && PATH="$(CURDIR)/$(BIN):$$PATH" npm test --silent
 
-test-modules:
+# The tests and the kernels are compiled once here, not by many processes at a time.
+$(VENV)/.test-modules: $(READY)
 	@told=$$($(BIN)/pytest --collect-only -q) || { tail -20 <<<"$$told"; exit 1; }
+	@touch $@
+
+# And again where a kernel has changed.
+KERNELS := $(shell grep -rl --include='*.py' 'maps.compiled import' maps localization robots fleet sim)
+$(VENV)/.kernels: $(READY) maps/compiled.py $(KERNELS)
+	$(MAKE) --no-print-directory -j -O arm-kernels building-kernels fleet-kernels
+	@touch $@
 
 # Vision, kinematics and drawing, and localization.
 arm-kernels:

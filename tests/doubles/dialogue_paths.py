@@ -58,6 +58,14 @@ def every_kind_of_answer(scripts: Mapping[str, Script], issue: Issue) -> list[tu
     )
 
 
+def shortest_of_each(scripts: Mapping[str, Script], issue: Issue) -> list[tuple[str, Path]]:
+    """Each dialogue with the fewest calls that take it from its opening to its end."""
+    return [
+        (name, min((path for path, _ in _paths(script, issue)), key=len))
+        for name, script in sorted(scripts.items())
+    ]
+
+
 def _kind(branch: Branch) -> Hashable:
     asked = branch.said[-1]
     assert isinstance(asked, Ask)

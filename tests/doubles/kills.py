@@ -235,15 +235,18 @@ class Ordeal:
             findings.unfinished.append(f"run {run}: {view.status}: {reason}")
 
 
-async def doubled_starts(service: ServiceProcess, kills: int, *, committed: bool) -> list[str]:
+async def doubled_starts(
+    service: ServiceProcess, kills: int, *, committed: bool, runs_before: int = 0
+) -> list[str]:
     """Lose the answer to a run that is asked for under a key, then ask twice more, so many times.
 
-    The service is killed as soon as the run is in the journal, or as soon as the request was sent.
+    The service is killed as soon as the run is in the journal, or as soon as the request was sent;
+    `runs_before`: so many are in its journal already.
     Returns what is not as it should be, one run for each key.
     """
     request = RunRequest(tree="eket", world="tabletop", answers="none").model_dump(mode="json")
     wrong: list[str] = []
-    for number in range(1, kills + 1):
+    for number in range(runs_before + 1, runs_before + kills + 1):
         sent: Any = {"json": request, "headers": {"Idempotency-Key": f'"{number}"'}}
         async with httpx.AsyncClient(base_url=service.url, timeout=PATIENCE_S) as client:
             lost = asyncio.create_task(client.post("/api/runs", **sent))

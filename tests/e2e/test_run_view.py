@@ -30,7 +30,7 @@ def status(page: Page) -> object:
     return page.locator(".run-header .badge")
 
 
-async def test_tree_shows_states_and_levels_as_the_service_says(
+async def test_tree_and_question_are_as_the_service_says_whenever_one_comes(
     service: Service, open_page: OpenPage
 ) -> None:
     run = await asked_run(service)
@@ -41,16 +41,18 @@ async def test_tree_shows_states_and_levels_as_the_service_says(
     await wait_for_tree(page, told(view.nodes, {each.node for each in view.dialogues}))
     owner = view.robots[0]
     await expect(green_leg).to_have_accessible_name(re.compile(f"held by {owner}"))
-
-
-async def test_open_question_stands_beside_its_run(service: Service, open_page: OpenPage) -> None:
-    run = await asked_run(service)
-    page = await open_page(f"/runs/{run.id}")
+    # The open question stands beside its run.
     await expect(page.get_by_role("button", name="YES").first).to_be_visible(timeout=WAIT_MS)
     await page.get_by_role("slider", name="Moment of the run").press("Home")
     await expect(page.get_by_role("button", name="YES")).to_have_count(0)
     await page.get_by_role("button", name="Back to live").click()
     await expect(page.get_by_role("button", name="YES").first).to_be_visible()
+    # Nothing is lost when the page comes in the middle.
+    question = page.get_by_role("log").get_by_text("green leg", exact=False).last
+    await expect(question).to_be_visible(timeout=WAIT_MS)
+    await page.reload()
+    await expect(page.get_by_role("log").get_by_text("begins")).to_be_visible()
+    await expect(green_leg).to_have_attribute("data-state", "in_dialogue")
 
 
 async def test_run_is_followed_to_its_end(service: Service, open_page: OpenPage) -> None:
@@ -62,7 +64,9 @@ async def test_run_is_followed_to_its_end(service: Service, open_page: OpenPage)
     await wait_for_tree(page, told(view.nodes, set(), view.result))
 
 
-async def test_run_is_paused_and_resumed(service: Service, open_page: OpenPage) -> None:
+async def test_run_is_paused_resumed_and_once_it_was_asked_aborted(
+    service: Service, open_page: OpenPage
+) -> None:
     run = await asked_run(service)
     page = await open_page(f"/runs/{run.id}")
     await page.get_by_role("button", name="Pause", exact=True).click()
@@ -73,11 +77,6 @@ async def test_run_is_paused_and_resumed(service: Service, open_page: OpenPage) 
     await page.get_by_role("button", name="Resume").click()
     await expect(status(page)).to_have_text("running")
     assert (await service.runtime.run(run.id)).status is RunStatus.RUNNING
-
-
-async def test_abort_is_asked_once_before_it_is_done(service: Service, open_page: OpenPage) -> None:
-    run = await asked_run(service)
-    page = await open_page(f"/runs/{run.id}")
     await page.get_by_role("button", name="Abort …").click()
     await page.get_by_role("button", name="Let it go on").click()
     await expect(page.get_by_role("dialog")).to_be_hidden()
@@ -89,40 +88,16 @@ async def test_abort_is_asked_once_before_it_is_done(service: Service, open_page
     assert (await service.runtime.run(run.id)).status is RunStatus.ABORTED
 
 
-async def test_nothing_is_lost_when_the_page_comes_in_the_middle(
-    service: Service, open_page: OpenPage
-) -> None:
-    run = await asked_run(service)
-    page = await open_page(f"/runs/{run.id}")
-    question = page.get_by_role("log").get_by_text("green leg", exact=False).last
-    await expect(question).to_be_visible(timeout=WAIT_MS)
-    await page.reload()
-    await expect(page.get_by_role("log").get_by_text("begins")).to_be_visible()
-    await expect(page.get_by_role("treeitem", name="green leg")).to_have_attribute(
-        "data-state", "in_dialogue"
-    )
-
-
 async def test_unknown_run_is_said_to_be_unknown(open_page: OpenPage) -> None:
     page = await open_page("/runs/00000000-0000-4000-8000-000000000000")
     await expect(page.get_by_role("heading", name="This run cannot be shown")).to_be_visible()
 
 
-async def test_page_is_never_wider_than_its_window(service: Service, open_page: OpenPage) -> None:
+async def test_a_phone_shows_one_part_at_a_time_and_no_page_is_wider_than_its_window(
+    service: Service, open_page: OpenPage
+) -> None:
     run = await asked_run(service)
     page = await open_page(f"/runs/{run.id}", viewport={"width": 360, "height": 800})
-    await expect(page.get_by_role("tree")).to_be_visible()
-    await page.get_by_role("button", name="One event back").click()
-    await expect(page.get_by_role("button", name="Back to live")).to_be_visible()
-    for width in (360, 768, 1440):
-        await page.set_viewport_size({"width": width, "height": 800})
-        await expect(page.get_by_role("tree")).to_be_visible()
-        assert await page.evaluate("document.documentElement.scrollWidth") <= width
-
-
-async def test_a_phone_shows_one_part_at_a_time(service: Service, open_page: OpenPage) -> None:
-    run = await asked_run(service)
-    page = await open_page(f"/runs/{run.id}", viewport={"width": 360, "height": 740})
     await expect(page.get_by_role("tree")).to_be_visible()
     await page.get_by_role("tab", name="Tree").focus()
     await page.keyboard.press("ArrowRight")
@@ -132,3 +107,11 @@ async def test_a_phone_shows_one_part_at_a_time(service: Service, open_page: Ope
     await expect(page.get_by_role("region", name="Timeline")).to_be_visible()
     await page.keyboard.press("ArrowRight")
     await expect(page.get_by_role("log")).to_be_visible()
+    await page.get_by_role("tab", name="Tree").click()
+    await expect(page.get_by_role("tree")).to_be_visible()
+    await page.get_by_role("button", name="One event back").click()
+    await expect(page.get_by_role("button", name="Back to live")).to_be_visible()
+    for width in (360, 768, 1440):
+        await page.set_viewport_size({"width": width, "height": 800})
+        await expect(page.get_by_role("tree")).to_be_visible()
+        assert await page.evaluate("document.documentElement.scrollWidth") <= width

@@ -1,7 +1,5 @@
 """The library of task trees: upload, editor, and what can be done with a tree."""
 
-from collections.abc import Awaitable, Callable
-
 import pytest
 from console_in_browser import OpenPage
 from playwright.async_api import Locator, Page, Route, expect
@@ -18,8 +16,6 @@ tree:
     - {behavior: pick_and_place, object: blue_leg, plce: blue_leg}
 """
 CORRECT = SHELF.replace("plce", "place")
-
-Upload = Callable[[Page, str, bytes], Awaitable[None]]
 
 DROP = """([name, bytes]) => {
     const files = new DataTransfer();
@@ -69,10 +65,9 @@ def drawn(page: Page, name: str) -> Locator:
     return page.get_by_role("tree").get_by_role("treeitem", name=name)
 
 
-@pytest.mark.parametrize("upload", [by_button, by_dropping])
-async def test_wrong_file_is_put_right_saved_and_run(open_page: OpenPage, upload: Upload) -> None:
+async def test_wrong_file_is_put_right_saved_and_run(open_page: OpenPage) -> None:
     page = await open_library(open_page)
-    await upload(page, "shelf.yaml", SHELF.encode())
+    await by_dropping(page, "shelf.yaml", SHELF.encode())
     await expect(page.get_by_text("shelf.yaml has 2 mistakes")).to_be_visible()
     await expect(page.get_by_role("status").filter(has_text="2 mistakes")).to_be_visible()
     await expect(page.locator(".text-editor-numbers .wrong")).to_have_text("6")
@@ -92,10 +87,9 @@ async def test_wrong_file_is_put_right_saved_and_run(open_page: OpenPage, upload
     await page.wait_for_url("**/runs/*")
 
 
-@pytest.mark.parametrize("upload", [by_button, by_dropping])
-async def test_right_file_is_in_the_library_at_once(open_page: OpenPage, upload: Upload) -> None:
+async def test_right_file_is_in_the_library_at_once(open_page: OpenPage) -> None:
     page = await open_library(open_page)
-    await upload(page, "shelf.yaml", CORRECT.encode())
+    await by_button(page, "shelf.yaml", CORRECT.encode())
     await expect(page).to_have_url("/trees/shelf")
     await expect(drawn(page, "blue leg")).to_be_visible()
 

@@ -21,7 +21,7 @@ def read(truth: Path) -> list[dict[str, Any]]:
 async def test_what_a_service_says_is_true_whatever_happens_and_whoever_is_killed(
     tmp_path: Path,
 ) -> None:
-    ordeal = BuildingOrdeal(SMALL, tmp_path, minutes=0.75, kills=2, speed=20.0)
+    ordeal = BuildingOrdeal(SMALL, tmp_path, minutes=0.4, kills=2, speed=20.0)
     assert {each.whom for each in ordeal.kills} == {"service", "robots"}
     outcome = await ordeal.go_through()
     assert outcome.findings == []

@@ -3,12 +3,13 @@
 import asyncio
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import AsyncIterator, Mapping, Sequence
 from pathlib import Path
 
 import pytest
+import pytest_asyncio
 from example_robot import ROBOT
-from service_process import service_process
+from service_process import ServiceProcess, service_process
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -21,9 +22,18 @@ TIME_S = 120.0
 pytestmark = pytest.mark.slow(4)
 
 
+@pytest_asyncio.fixture(scope="module", loop_scope="module")
+async def service(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[ServiceProcess]:
+    async with service_process(tmp_path_factory.mktemp("service")) as service:
+        yield service
+
+
+@pytest.mark.asyncio(loop_scope="module")
 @pytest.mark.parametrize("client", sorted(each.name for each in EXAMPLES.glob("*.py")))
-async def test_an_example_client_sees_its_run_to_the_end(tmp_path: Path, client: str) -> None:
-    async with service_process(tmp_path) as service, asyncio.timeout(TIME_S):
+async def test_an_example_client_sees_its_run_to_the_end(
+    service: ServiceProcess, client: str
+) -> None:
+    async with asyncio.timeout(TIME_S):
         process = await asyncio.create_subprocess_exec(
             sys.executable, str(EXAMPLES / client), service.url, *ARGUMENTS.get(client, ()),
             env={**os.environ, "MEND_TOKEN": ""},

@@ -17,6 +17,7 @@ from courtyard.cart import RADIUS_M
 from courtyard.world import Courtyard
 from installed_example import EXAMPLES, install
 from random_task import random_nesting
+from sampled import sample
 from untruths import kinds_of
 
 from mend.server.composition import Service, open_service
@@ -146,7 +147,8 @@ def drawn(seed: int) -> tuple[str, str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(6))
+# One that somebody helps, and one that nobody does.
+@pytest.mark.parametrize("seed", range(sample(2, 6)))
 async def test_drawn_errands_all_end_and_no_two_carts_ever_touch(
     tmp_path: Path, seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -5,6 +5,7 @@ A small sample: `benchmarks/random_scenarios.py` has more of them, and larger on
 
 import pytest
 from random_scenarios import KINDS, run_once
+from sampled import sample
 
 
 @pytest.mark.slow
@@ -15,7 +16,7 @@ async def test_a_random_scenario_ends_and_what_it_says_is_true(seed: int) -> Non
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [203, 206])
+@pytest.mark.parametrize("seed", sample([203], [203, 206]))
 async def test_two_robots_share_a_random_scene_and_never_touch(seed: int) -> None:
     outcome = await run_once("tabletop", seed, robots=2, most_leaves=8)
     assert outcome.wrong == []

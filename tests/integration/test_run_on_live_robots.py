@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 import pytest_asyncio
 from example_robot import example_robot
+from sampled import sample
 from service_process import ServiceProcess, free_port, service_process
 
 from mend.server.client import MendClient
@@ -176,7 +177,7 @@ async def test_robots_that_are_not_there_are_told_with_those_that_are(
 KIT = ("kit", "--scene", str(EXAMPLES / "two_arms" / "kit_for_two.yaml"), "--world", "live")
 
 
-@pytest.mark.parametrize("through_a_service", [False, True])
+@pytest.mark.parametrize("through_a_service", sample([False], [False, True]))
 async def test_two_robots_stand_where_the_scene_says_and_share_the_work(
     tmp_path: Path, service: ServiceProcess, *, through_a_service: bool
 ) -> None:
@@ -202,23 +203,8 @@ async def test_two_robots_stand_where_the_scene_says_and_share_the_work(
     assert (finished.missing, finished.unseen) == ([], [])
 
 
-async def test_who_stands_nowhere_in_the_scene_is_told_before_anybody_is_waited_for(
-    tmp_path: Path,
-) -> None:
-    port = str(free_port())
-    async with mend_run(tmp_path, *KIT, "--robot", "lft=demo", MEND_PORT=port) as misplaced:
-        wrong = await misplaced.outcome()
-    async with mend_run(tmp_path, *KIT, "--robot", "demo", MEND_PORT=port) as alone:
-        lacking = await alone.outcome()
-    async with mend_run(tmp_path, *KIT, "--robot", "left=a", "--robot", "b") as mixed:
-        both = await mixed.outcome()
-    assert [each[:2] for each in (wrong, lacking, both)] == [(2, "")] * 3
-    assert "the scene 'kit_for_two' has no robot 'lft'; it has 'left', 'right'" in wrong[2]
-    assert "'robots' lists 1, but in the scene 'kit_for_two' stand 'left', 'right'" in lacking[2]
-    assert "--robot is 'b'; where one robot is PLACE=NAME all have to be" in both[2]
-
-
-@pytest.mark.parametrize("through_a_service", [False, True])
+# A run at its own door is ended so in `test_cli.py`.
+@pytest.mark.parametrize("through_a_service", sample([True], [False, True]))
 async def test_ctrl_c_aborts_it_and_ends_the_waiting(
     tmp_path: Path, service: ServiceProcess, *, through_a_service: bool
 ) -> None:

@@ -6,11 +6,14 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
+from sampled import sample
 
 MEND = str(Path(sys.executable).with_name("mend"))
 EXAMPLES = Path(__file__).parents[2] / "examples" / "buildings"
 SCENE, REQUESTS = EXAMPLES / "scenes" / "office_at_work.yaml", EXAMPLES / "requests.yaml"
-NAMES = ("mail", "keys", "lunch", "guest", "visit")
+ALL_NAMES = ("mail", "keys", "lunch", "guest", "visit")
+NAMES = sample(("mail", "visit"), ALL_NAMES)
 PATIENCE_S = 400.0
 
 
@@ -25,13 +28,17 @@ def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.slow(15)
-def test_the_shipped_requests_are_all_met(tmp_path: Path) -> None:
+@pytest.mark.slow(8)
+def test_the_shipped_requests_are_met(tmp_path: Path) -> None:
+    shipped = yaml.safe_load(REQUESTS.read_text("utf-8"))["requests"]
+    assert tuple(each["name"] for each in shipped) == ALL_NAMES
+    wanted = tmp_path / "requests.yaml"
+    wanted.write_text(yaml.safe_dump({"requests": [e for e in shipped if e["name"] in NAMES]}))
     exact = ("--option", "localizer=exact", "--option", "unmapped=0")
-    done = run(tmp_path, str(SCENE), str(REQUESTS), *exact)
+    done = run(tmp_path, str(SCENE), str(wanted), *exact)
     assert done.returncode == 0, done.stderr
     lines = [line[10:] for line in done.stdout.splitlines()]
-    assert lines[-1] == "of 5 requests: 5 done"
+    assert lines[-1] == f"of {len(NAMES)} requests: {len(NAMES)} done"
     assert "shutting down" not in done.stderr
     for name in NAMES:
         assert any(line.startswith(f"'{name}' is done") for line in lines)

@@ -17,9 +17,12 @@ import cv2
 import httpx
 import numpy as np
 import pytest
+from broken_constraints import broken_constraints
 from mcap.reader import make_reader
 from recorded_service import RecordedService, recorded_events
+from service_process import free_port
 from shown_run import hello, poses, run_state
+from untruths import kinds_of
 
 from mend.server.cli import main
 from mend.server.cli.check import kind_of_file
@@ -33,6 +36,8 @@ from mend.server.poses.layout import lay_out
 from mend.server.poses.record import layout_path, record_path
 from mend.tasks.library import TREES
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
+TASKS = EXAMPLES / "tasks"
 SCENE = """\
 name: bench
 objects:
@@ -647,6 +652,24 @@ def test_colors_are_learned_from_supplied_pictures(mend: Mend, tmp_path: Path) -
     assert (outcome.code, outcome.out) == (0, f"{model}: the colours of cup\n")
 
 
+# --- Live robots ------------------------------------------------------------------------------
+
+
+def test_who_stands_nowhere_in_the_scene_is_told_before_anybody_is_waited_for(
+    mend: Mend, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("MEND_PORT", str(free_port()))
+    kit = ("run", "kit", "--scene", str(EXAMPLES / "two_arms" / "kit_for_two.yaml"))
+    live = (*kit, "--world", "live", "--robot")
+    wrong = mend(*live, "lft=demo")
+    lacking = mend(*live, "demo")
+    both = mend(*live, "left=a", "--robot", "b")
+    assert [(each.code, each.out) for each in (wrong, lacking, both)] == [(2, "")] * 3
+    assert "the scene 'kit_for_two' has no robot 'lft'; it has 'left', 'right'" in wrong.err
+    assert "'robots' lists 1, but in the scene 'kit_for_two' stand 'left', 'right'" in lacking.err
+    assert "--robot is 'b'; where one robot is PLACE=NAME all have to be" in both.err
+
+
 # --- As a process -----------------------------------------------------------------------------
 
 
@@ -715,7 +738,12 @@ def test_the_papers_scenario_is_run_for_real_and_finishes(data_dir: Path) -> Non
         "collab_finish",
         "robot_finish",
     ]
-    assert isinstance(events[-1], ev.RunFinished)
+    assert all(each.picture for each in events if isinstance(each, ev.IssueRaised))
+    started, finished = events[0], events[-1]
+    assert isinstance(started, ev.RunStarted)
+    assert isinstance(finished, ev.RunFinished)
+    assert finished.missing == []
+    assert broken_constraints(events, kinds_of(started)) == []
 
 
 @pytest.mark.slow(3)
@@ -751,10 +779,7 @@ def test_serve_says_where_it_listens_and_stops_when_told(
 # --- scenes and scenarios of one's own -----------------------------------------------------------
 
 
-EXAMPLES = Path(__file__).parents[2] / "examples" / "tasks"
-
-
-@pytest.mark.parametrize("file", sorted(EXAMPLES.rglob("*.yaml")), ids=lambda file: file.name)
+@pytest.mark.parametrize("file", sorted(TASKS.rglob("*.yaml")), ids=lambda file: file.name)
 def test_the_examples_are_without_mistakes(mend: Mend, file: Path) -> None:
     outcome = mend("check", str(file))
     assert (outcome.code, outcome.err) == (0, "")
@@ -769,8 +794,8 @@ def test_a_scene_and_a_scenario_may_be_files(
     mend: Mend, service: Callable[..., RecordedService]
 ) -> None:
     recorded = service()
-    scene, scenario = EXAMPLES / "scenes/small_flat.yaml", EXAMPLES / "clumsy_evening.yaml"
-    task = EXAMPLES / "shelf.yaml"
+    scene, scenario = TASKS / "scenes/small_flat.yaml", TASKS / "clumsy_evening.yaml"
+    task = TASKS / "shelf.yaml"
     assert mend("run", str(task), "--scene", str(scene), "--scenario", str(scenario)).code == 0
     (request,) = recorded.requests
     assert (request.tree, request.scene, request.scenario) == (
@@ -796,7 +821,7 @@ def test_an_option_beyond_its_limit_is_told_with_what_would_be_right(mend: Mend)
 def test_a_scene_may_be_named(mend: Mend, service: Callable[..., RecordedService]) -> None:
     recorded = service()
     assert mend("run", "eket", "--scene", "eket").code == 0
-    assert mend("run", str(EXAMPLES / "shelf.yaml"), "--scene", "small_flat").code == 0
+    assert mend("run", str(TASKS / "shelf.yaml"), "--scene", "small_flat").code == 0
     assert [each.scene for each in recorded.requests] == ["eket", "small_flat"]
 
 

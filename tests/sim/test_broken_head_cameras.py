@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from broken_camera import BrokenCamera
+from sampled import sample
 
 pytest.importorskip("pybullet", reason="PyBullet has wheels for Python 3.10 and 3.11 only")
 
@@ -97,7 +98,10 @@ def broken(world: str, options: dict[str, Any]) -> Broken:
     return made
 
 
-@pytest.fixture(params=WORLDS, ids=lambda param: f"{param[0]} {param[1]}")
+# The one in which most is uncertain, and the one in which least is.
+@pytest.fixture(
+    params=sample([WORLDS[1], WORLDS[3]], WORLDS), ids=lambda param: f"{param[0]} {param[1]}"
+)
 def robot(request: pytest.FixtureRequest) -> Iterator[Broken]:
     made = broken(*request.param)
     yield made
@@ -148,7 +152,7 @@ def test_a_sound_camera_is_never_blamed_however_still_the_scene_is(robot: Broken
     assert len(robot.of(Finished)) == 1
 
 
-@pytest.mark.parametrize("seed", range(395200, 395203))
+@pytest.mark.parametrize("seed", sample((395200,), range(395200, 395203)))
 @pytest.mark.parametrize(
     ("world", "options"),
     [

@@ -5,7 +5,8 @@ import { createHistory } from "../src/run/history";
 import type { Told } from "../src/wire/told";
 import { type FoldedRun, foldedRuns, type Said } from "./folded_runs.mjs";
 
-const SEEDS = ["5", "8", "11", "12", "15", "23"];
+// Two in which everything changes that can.
+const SEEDS = ["12", "23"];
 
 let runs: FoldedRun[] = [];
 

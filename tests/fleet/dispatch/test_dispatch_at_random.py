@@ -2,9 +2,10 @@
 
 import pytest
 from dispatch_ordeal import DispatchOrdeal
+from sampled import sample
 
 
-@pytest.mark.parametrize("seed", [11, 12, 13])
+@pytest.mark.parametrize("seed", sample([11], [11, 12, 13]))
 def test_everything_comes_to_an_end(seed: int) -> None:
     ordeal = DispatchOrdeal(seed)
     ordeal.happen(40)

@@ -5,13 +5,14 @@ from random import Random
 import pytest
 from dispatch_happenings import drawn_fleet
 from dispatch_office import asked, dispatcher_for, visit
+from sampled import sample
 
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.requests import request_of
 from mend.maps.building.building import PlaceKind
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", sample([1], [1, 2, 3]))
 def test_what_is_offered_is_booked_when_it_is_asked_for(seed: int) -> None:
     building, setting = drawn_fleet(seed)
     dispatcher, chance = Dispatcher(building, setting), Random(seed)

@@ -68,7 +68,7 @@ def drawn_problem(seed: int) -> Problem:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", sample((0, 1, 2, 3, 4, 5, 6, 8), range(24)))
+@pytest.mark.parametrize("seed", sample((0, 1, 2, 5), range(24)))
 def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
     problem = drawn_problem(seed)
     exact = solve_exactly(problem, seconds=600.0, clock=time.perf_counter)
@@ -215,7 +215,9 @@ def test_nothing_to_deliver_is_delivered_at_once() -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not DATA.is_dir(), reason="the folder of benchmark instances is not here")
-@pytest.mark.parametrize("name", ["3R-4K-4T-180L-0", "5R-4K-4T-180L-0"])
+@pytest.mark.parametrize(
+    "name", sample(["5R-4K-4T-180L-0"], ["3R-4K-4T-180L-0", "5R-4K-4T-180L-0"])
+)
 def test_published_optimum_is_found(name: str) -> None:
     (path,) = DATA.glob(f"*/{name}.txt")
     problem = read_transfer_benchmark(path.read_text(), name)

@@ -66,7 +66,7 @@ def solved(problem: Problem, seconds: float = 6.0, **options: object) -> Solutio
 
 
 @pytest.mark.slow(2)
-@pytest.mark.parametrize("seed", sample((1, 4, 5, 7, 8, 9, 10, 11), range(16)))
+@pytest.mark.parametrize("seed", sample((4, 7, 8, 11), range(16)))
 def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
     problem = drawn_problem(seed)
     exact = solve_exactly(problem, seconds=600.0, clock=time.perf_counter)
@@ -89,7 +89,7 @@ def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
     weight=st.sampled_from((0.0, 5.0, 1e6)),
     transfers=st.booleans(),
 )
-@settings(deadline=None, max_examples=sample(25, 80))
+@settings(deadline=None, max_examples=sample(12, 80))
 def test_schedule_found_passes_the_checker(
     items: tuple[Item, ...], seed: int, weight: float, transfers: bool
 ) -> None:
@@ -224,7 +224,7 @@ def test_it_is_chosen_where_there_are_many_items_and_no_transfers() -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not DATA.is_dir(), reason="the folder of benchmark instances is not here")
-@pytest.mark.parametrize("name", ["lr101", "lrc101"])
+@pytest.mark.parametrize("name", sample(["lrc101"], ["lr101", "lrc101"]))
 def test_best_known_schedule_is_found(name: str) -> None:
     folder = DATA / "li_lim"
     with (folder / "best_known.csv").open() as file:

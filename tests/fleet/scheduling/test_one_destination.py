@@ -8,6 +8,7 @@ import pytest
 from delivery_problems import corridor, parcel
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 from ticking_clock import TickingClock
 
 from mend.fleet.scheduling.checker import check
@@ -34,7 +35,7 @@ def collection(items: int, robots: int, chance: Random) -> Problem:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(sample(1, 3)))
 def test_cost_is_at_most_twice_the_optimum(seed: int) -> None:
     problem = collection(2 + seed % 2, 2, Random(seed))
     walk = solve_to_one_destination(problem, seconds=0.0, clock=TickingClock())

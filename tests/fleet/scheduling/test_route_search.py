@@ -158,7 +158,8 @@ def test_staircase_keeps_what_is_later_or_cheaper_than_all_others() -> None:
 @pytest.mark.slow
 @pytest.mark.skipif(not DATA.is_dir(), reason="the folder of benchmark instances is not here")
 @pytest.mark.parametrize(
-    ("name", "optimum"), [("5R-4K-4T-240M-1", 512.570), ("5R-4K-4T-300L-3", 500.621)]
+    ("name", "optimum"),
+    [*sample([], [("5R-4K-4T-240M-1", 512.570)]), ("5R-4K-4T-300L-3", 500.621)],
 )
 def test_five_items_are_settled_by_routes_alone(name: str, optimum: float) -> None:
     (path,) = DATA.glob(f"*/{name}.txt")

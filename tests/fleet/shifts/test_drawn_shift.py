@@ -5,6 +5,7 @@ from functools import cache
 from itertools import pairwise
 
 import pytest
+from sampled import sample
 
 from mend.errors import WrongInputError
 from mend.fleet.dispatch.dispatcher import Dispatcher
@@ -96,7 +97,7 @@ def test_whatever_happens_is_on_the_way_of_what_is_asked_for_then(seed: int, flo
 
 
 @pytest.mark.slow(2)
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", range(sample(1, 2)))
 def test_a_thing_changes_robots_or_it_is_told_that_none_does(seed: int) -> None:
     building, shift = office_and_shift(2, seed)
     told = any(note.startswith("no thing changes robots") for note in shift.notes)

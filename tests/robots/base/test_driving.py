@@ -182,7 +182,7 @@ def test_it_looks_until_its_way_is_clear_and_goes_on_where_it_was() -> None:
     assert is_at(bench, PLACES["near"])
 
 
-@settings(max_examples=sample(15, 60), deadline=None)
+@settings(max_examples=sample(8, 60), deadline=None)
 @given(
     x=st.floats(-1.0, 8.0),
     y=st.floats(-2.0, 8.0),

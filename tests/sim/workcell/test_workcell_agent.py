@@ -113,7 +113,7 @@ def world_of(group: SharedWorld) -> WorkcellWorld:
     "options",
     [
         {"renderer": "bullet"},
-        {"renderer": "fast"},
+        *sample([], [{"renderer": "fast"}]),
         {"renderer": "fast", "camera_noise": 3.0, "light": 1.0},
     ],
 )
@@ -145,7 +145,9 @@ def test_a_stolen_part_is_noticed(
     assert [each.issue for each in reports if isinstance(each, IssueDetected)] == [issue]
 
 
-@pytest.mark.parametrize("options", [{}, {"renderer": "fast", "camera_noise": 3.0, "light": 1.0}])
+@pytest.mark.parametrize(
+    "options", [*sample([], [{}]), {"renderer": "fast", "camera_noise": 3.0, "light": 1.0}]
+)
 def test_a_place_that_is_taken_is_seen_cleared_and_then_filled(
     scene: Scene, options: dict[str, object]
 ) -> None:
@@ -165,7 +167,7 @@ def test_a_place_that_is_taken_is_seen_cleared_and_then_filled(
     assert distance_m(world_of(group).parts["bar"].pose(), PLACE) < 0.003
 
 
-@pytest.mark.parametrize("fraction", sample([0.2, 0.9], [0.2, 0.7, 0.9]))
+@pytest.mark.parametrize("fraction", sample([0.9], [0.2, 0.7, 0.9]))
 def test_somebody_in_the_way_is_met_however_late_they_come(scene: Scene, fraction: float) -> None:
     blocked = ScriptedIntervention(
         when=Trigger(object="bar", step=5, fraction=fraction), do=Intervention(act=Act.BLOCK)

@@ -54,7 +54,7 @@ LEAF = BehaviorNode(
     ("at", "where", "to"),
     [
         ((0.575, -0.4), ("objects", "part", "pose"), "part"),
-        ((0.5, -0.325), ("objects", "part", "pose"), "part"),
+        *sample([], [((0.5, -0.325), ("objects", "part", "pose"), "part")]),
         ((0.575, 0.05), ("places", "part", "pose"), "the place of part"),
     ],
 )

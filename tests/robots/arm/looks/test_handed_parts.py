@@ -1,10 +1,13 @@
 """Of parts of one colour the one that is asked for is taken from a person, and no other."""
 
+from itertools import pairwise, product
+
 import numpy as np
 import pytest
 import robot_bench
 from drawn_scene import COLORS, PARTS, DrawnScene, Resting
 from robot_bench import RobotBench
+from sampled import sample
 
 from mend.robots.catalogue import Part
 from mend.robots.link.messages import Looked
@@ -44,8 +47,17 @@ def takes(bench: RobotBench, wanted: str) -> bool:
     return bench.of(Looked)[-1].fulfilled is True
 
 
-@pytest.mark.parametrize("wanted", OF_ONE_COLOR)
-@pytest.mark.parametrize("offered", OF_ONE_COLOR)
+@pytest.mark.parametrize(
+    ("offered", "wanted"),
+    sample(
+        # Each once where it is wanted, and once where another one is.
+        [
+            *zip(OF_ONE_COLOR, OF_ONE_COLOR, strict=True),
+            *pairwise((*OF_ONE_COLOR, next(iter(OF_ONE_COLOR)))),
+        ],
+        list(product(OF_ONE_COLOR, OF_ONE_COLOR)),
+    ),
+)
 def test_of_parts_of_one_colour_only_the_right_one_is_taken(
     monkeypatch: pytest.MonkeyPatch, wanted: str, offered: str
 ) -> None:
