@@ -3,7 +3,7 @@
 import os
 from typing import TypeVar
 
-EVERYTHING = "MEND_TEST_EVERYTHING"
+EVERYTHING = "TEST_EVERYTHING"
 """The environment variable with which `benchmarks/whole_samples.py` asks for everything."""
 
 T = TypeVar("T")
