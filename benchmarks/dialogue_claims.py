@@ -235,9 +235,15 @@ def _then_with(record: RunRecord, index: int, event: ev.Prompt, said: re.Match[s
     """What is to go first, or instead, is begun before the leaf is begun again."""
     if event.kind == "ask" or "another part" in said[1] or " or I take" in event.text:
         return None
-    for each in record.following(index):
+    later = record.following(index)
+    for number, each in enumerate(later):
         if isinstance(each, ev.NodeStarted) and each.node == event.node:
-            return "it was tried again before that"
+            # What a camera did not show may turn out to have been done.
+            found = any(
+                isinstance(next_, ev.NodeDone) and next_.node == event.node and next_.by == "found"
+                for next_ in later[number + 1 : number + 2]
+            )
+            return None if found else "it was tried again before that"
         if _is_begun(record, each, said[1]):
             return None
     return None

@@ -30,7 +30,7 @@ from mend.localization.pose import Poses
 from mend.maps.vector_map import VectorMap
 from mend.maps.vector_map_file import read_vector_map
 
-DATA = Path(os.environ.get("BENCHMARK_DATA", Path(__file__).parents[2] / "shared/data"))
+DATA = Path(os.environ.get("BENCH_DATA", Path(__file__).parents[2] / "shared/data"))
 STEP_M = 0.1
 DRIVE_M = 60.0
 BEFORE, AFTER = 50, 80

@@ -35,7 +35,7 @@ from mend.localization.scan_matching import matched_poses
 from mend.maps.vector_map import VectorMap
 from mend.maps.vector_map_file import read_vector_map
 
-DATA = Path(os.environ.get("BENCHMARK_DATA", Path(__file__).parents[2] / "shared/data"))
+DATA = Path(os.environ.get("BENCH_DATA", Path(__file__).parents[2] / "shared/data"))
 PEER = "mrpt"
 QUICK_SCANS = 150
 HEADINGS = (

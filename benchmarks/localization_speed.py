@@ -30,7 +30,7 @@ from mend.maps.ray_cast import cast
 from mend.maps.vector_map import VectorMap
 from mend.maps.vector_map_file import read_vector_map
 
-DATA = Path(os.environ.get("BENCHMARK_DATA", Path(__file__).parents[2] / "shared/data"))
+DATA = Path(os.environ.get("BENCH_DATA", Path(__file__).parents[2] / "shared/data"))
 Matrix = NDArray[np.float64]
 RAYS = 1000
 RANGE_M = 30.0

@@ -31,7 +31,7 @@ from mend.localization.pictures.canvas import Svg
 from mend.maps.vector_map import VectorMap
 from mend.maps.vector_map_file import read_vector_map
 
-DATA = Path(os.environ.get("BENCHMARK_DATA", Path(__file__).parents[2] / "shared/data"))
+DATA = Path(os.environ.get("BENCH_DATA", Path(__file__).parents[2] / "shared/data"))
 PUBLISHED_KM = {
     "GHC4": (0.62, 4.42),
     "GHC6": (8.61, 9.48),

@@ -28,7 +28,7 @@ from mend.fleet.scheduling.methods import solve
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.solution import Solution, Status
 
-DATA = Path(os.environ.get("BENCHMARK_DATA", Path(__file__).parents[2] / "shared/data")) / "scheduling"
+DATA = Path(os.environ.get("BENCH_DATA", Path(__file__).parents[2] / "shared/data")) / "scheduling"
 OUT = Path("out/scheduling_exact.svg")
 SAME = 1e-4
 """Two costs are equal when they differ by less than this share."""

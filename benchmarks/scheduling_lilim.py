@@ -26,7 +26,7 @@ from mend.fleet.scheduling.instances.li_lim import read_li_lim
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.solution import Solution
 
-DATA = Path(os.environ.get("BENCHMARK_DATA", Path(__file__).parents[2] / "shared/data")) / "scheduling"
+DATA = Path(os.environ.get("BENCH_DATA", Path(__file__).parents[2] / "shared/data")) / "scheduling"
 OUT = Path("out/scheduling_lilim.svg")
 SAME = 1e-4
 """Two distances are equal when they differ by less than this share."""

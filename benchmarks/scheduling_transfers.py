@@ -32,7 +32,7 @@ from mend.fleet.scheduling.instances.transfer_benchmark import read_transfer_ben
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.rng import rng_from
 
-DATA = Path(os.environ.get("BENCHMARK_DATA", Path(__file__).parents[2] / "shared/data")) / "scheduling"
+DATA = Path(os.environ.get("BENCH_DATA", Path(__file__).parents[2] / "shared/data")) / "scheduling"
 SAME = 1e-4
 """Two costs are equal when they differ by less than this share."""
 

@@ -14,7 +14,7 @@ from task_documents import definition_of
 from untruths import Rest
 
 from mend.dialogue import missing
-from mend.dialogue.script import HelpState
+from mend.dialogue.script import Help, HelpState
 from mend.server.journal import events as ev
 from mend.sim.tabletop.layout import lay_out
 from mend.tasks.intervention import Act, Intervention
@@ -50,7 +50,7 @@ CROWDED = replace(STARTS, resting={**STARTS.resting, "part_2": place_of("part_1"
 
 def not_seen_in_reach() -> str:
     """As the script of `missing` has it, so that the judge listens to what is really said."""
-    state = missing.script.make(missing.script.parameters()).states["request"]
+    state = missing.script.make(missing.script.parameters()).states[Help.PUT_BACK]
     assert isinstance(state, HelpState)
     return state.not_seen.replace("{object}", "part 1")
 
@@ -380,6 +380,8 @@ def test_what_was_said_to_go_first_has_to() -> None:
     run = told().say(text).close().reset(failed=True)
     assert replace_events(run).start("/1", "part_2").start().wrong() == []
     assert replace_events(run).start().wrong() == ["it was tried again before that"]
+    done = replace_events(run).start().add(ev.NodeDone, node="/0", name="part_1", by="found")
+    assert done.wrong() == []
 
 
 def test_what_goes_first_may_be_named_by_its_place_but_only_once() -> None:

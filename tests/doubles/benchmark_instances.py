@@ -3,4 +3,4 @@
 import os
 from pathlib import Path
 
-DATA = Path(os.environ.get("BENCHMARK_DATA", Path(__file__).parents[3] / "shared/data")) / "scheduling"
+DATA = Path(os.environ.get("BENCH_DATA", Path(__file__).parents[3] / "shared/data")) / "scheduling"
