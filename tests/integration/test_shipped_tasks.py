@@ -11,7 +11,7 @@ from sampled import sample
 
 from mend.tasks.library import TREES
 
-LEFT = {"eket": 2, "workshop": 2, "kit": 2, "tea_table": 2}
+LEFT = {"workshop": 2, "kit": 2, "tea_table": 2}
 ALL = 1000
 
 
