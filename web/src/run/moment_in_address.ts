@@ -31,12 +31,15 @@ export function useMomentInAddress(moment: Moment, read: boolean): void {
     if (read && asked !== null) moment.goTo(asked);
   }, [read]);
   useEffect(() => {
-    // Browsers take few changes of the address at a time.
     if (!read || playing) return;
-    const timer = window.setTimeout(() => {
+    const tell = () => {
       const address = withMoment(location.pathname, shown);
       if (address !== location.pathname + location.search) history.replaceState(history.state, "", address);
-    }, SETTLED_MS);
+    };
+    // Whoever loads the page anew right after going back to the newest moment stays there.
+    if (shown === null) return tell();
+    // Browsers take few changes of the address at a time.
+    const timer = window.setTimeout(tell, SETTLED_MS);
     return () => window.clearTimeout(timer);
   }, [read, shown, playing]);
 }
