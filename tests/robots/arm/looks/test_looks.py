@@ -9,6 +9,7 @@ from drawn_scene import Resting
 from robot_bench import RobotBench
 from scripted_body import HAND_OVER, NEUTRAL, PLACES, STARTS
 
+from mend.robots.arm.looks.expectation import AtPlace
 from mend.robots.link.jpeg import read_jpeg
 from mend.robots.link.messages import (
     Finished,
@@ -106,6 +107,17 @@ def test_what_comes_to_its_place_in_time_is_seen() -> None:
     seen = looked(bench)
     assert seen.fulfilled is True
     assert 1.7 < bench.robot.time_s() - asked_s < 2.6
+
+
+def test_what_one_picture_alone_shows_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = RobotBench()
+    pictures = iter([True])
+    monkeypatch.setattr(AtPlace, "is_fulfilled", lambda _: next(pictures, False))
+    bench.look(expect="at_place", object="pink_bar", place="left", within_s=1.0)
+    assert looked(bench).fulfilled is False
+    pictures = iter([True, True])
+    bench.look(expect="at_place", object="pink_bar", place="left", within_s=1.0)
+    assert looked(bench).fulfilled is True
 
 
 def test_what_does_not_come_is_given_up_in_time() -> None:
