@@ -9,6 +9,7 @@ from typing import Any
 from mend.server.export.run_file import ShownPicture
 from mend.server.journal import events as ev
 from mend.server.poses.frame import Frame
+from mend.server.report.csv_text import no_formula
 from mend.server.transcript_line import Line
 
 TIMES = ("seq", "time_s", "wall_time", "type")
@@ -41,7 +42,9 @@ class CsvFile:
         known = {*TIMES, *NAMES}
         more = {name: value for name, value in fields.items() if name not in known}
         cells = [_cell(fields.get(name)) for name in (*TIMES, *NAMES)]
-        self._writer.writerow([*cells, told, json.dumps(more, ensure_ascii=False) if more else ""])
+        self._writer.writerow(
+            [*cells, no_formula(told), json.dumps(more, ensure_ascii=False) if more else ""]
+        )
 
     def add_picture(self, shown: ShownPicture, jpeg: bytes) -> None:
         """There are none in it."""
@@ -62,4 +65,4 @@ class CsvFile:
 def _cell(value: Any) -> str:
     if value is None:
         return ""
-    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    return no_formula(value) if isinstance(value, str) else json.dumps(value, ensure_ascii=False)

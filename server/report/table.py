@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from mend.server.report.csv_text import no_formula
+
 Cell = str | int | float | None
 """None is what is not known, or not there."""
 
@@ -38,4 +40,6 @@ def written(cell: Cell) -> str:
     """A cell for programs: a figure to a thousandth, nothing for what is not known."""
     if cell is None:
         return ""
+    if isinstance(cell, str):
+        return no_formula(cell)
     return f"{cell:.3f}".rstrip("0").rstrip(".") if isinstance(cell, float) else str(cell)
