@@ -46,26 +46,18 @@ class ChoiceRequest(BaseModel):
     helper: HelperName | None = None
 
 
-class ReleaseRequest(BaseModel):
-    """Who is no longer on it."""
+class HelperRequest(BaseModel):
+    """Which helper says it."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
     helper: HelperName | None = None
 
 
-class ClaimRequest(ReleaseRequest):
+class ClaimRequest(HelperRequest):
     """Who is on it; `take_over` takes the claim from another helper."""
 
     take_over: bool = False
-
-
-class WordRequest(BaseModel):
-    """Who says it."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-
-    helper: HelperName | None = None
 
 
 class ExtendRequest(BaseModel):
@@ -160,7 +152,7 @@ async def extend_deadline(
 @router.post("/{dialogue}/done", operation_id="say_help_is_done", responses=CHANGES)
 async def say_help_is_done(
     dialogue: DialogueId,
-    body: Annotated[WordRequest, Body(examples=[{"helper": "anna"}])],
+    body: Annotated[HelperRequest, Body(examples=[{"helper": "anna"}])],
     services: WithServices,
     caller: WithCaller,
 ) -> HelpReported:
@@ -173,7 +165,7 @@ async def say_help_is_done(
 @router.post("/{dialogue}/take_back", operation_id="take_back_promise", responses=CHANGES)
 async def take_back_promise(
     dialogue: DialogueId,
-    body: Annotated[WordRequest, Body(examples=[{"helper": "anna"}])],
+    body: Annotated[HelperRequest, Body(examples=[{"helper": "anna"}])],
     services: WithServices,
     caller: WithCaller,
 ) -> PromiseTakenBack:
@@ -186,7 +178,7 @@ async def take_back_promise(
 @router.post("/{dialogue}/release", operation_id="release_dialogue", responses=CHANGES)
 async def release_dialogue(
     dialogue: DialogueId,
-    body: Annotated[ReleaseRequest, Body(examples=[{"helper": "anna"}])],
+    body: Annotated[HelperRequest, Body(examples=[{"helper": "anna"}])],
     services: WithServices,
     caller: WithCaller,
 ) -> DialogueView:

@@ -17,7 +17,6 @@ from mend.server.settings import Settings
 ASKS = RunRequest(
     tree="eket", world="tabletop", speed="max", scenario="eket_paper", answers="live", seed=7
 )
-CALL_WITHIN_S = 2.0
 
 
 @pytest.fixture
@@ -71,9 +70,7 @@ async def test_a_question_calls_who_is_asked_and_an_answer_calls_it_off(
         assert (view["available"], view["asked"]) == (True, False)
         run = await service.runtime.start_run(ASKS)
         question = await the_open_question(service)
-        asked_at = time.monotonic()
         await until(lambda: bool(pushes.pushed))
-        assert time.monotonic() - asked_at < CALL_WITHIN_S
         [call] = pushes.of(phone)
         assert (call.type, call.text) == ("call", question.prompt.text)
         assert (call.dialogue, call.run) == (question.dialogue, run.id)
