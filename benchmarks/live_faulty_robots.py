@@ -24,12 +24,15 @@ class FaultyRobot:
     """Picks and places by timers; in its second step something is in its way, each time.
 
     `faults` has the moments at which it felt that (seconds since the epoch), by its execution.
+    It is gone after `cleared_after_s`, or once somebody clears it.
     """
 
-    def __init__(self, name: str, step_s: float) -> None:
+    def __init__(self, name: str, step_s: float, cleared_after_s: float = CLEARED_AFTER_S) -> None:
         self.name = name
         self.faults: dict[str, float] = {}
         self._step_s = step_s
+        self._cleared_after_s = cleared_after_s
+        self._clear = asyncio.Event()
         self._boot, self._seq = f"{time.time_ns():x}", 0
         self._poses = {name: {"x": 0.5, "y": 0.15 * n, "z": 0.7} for n, name in enumerate(OBJECTS)}
         self._placed: set[str] = set()
@@ -51,6 +54,10 @@ class FaultyRobot:
     def forget_placed(self) -> None:
         """Somebody has put everything back for the next run."""
         self._placed.clear()
+
+    def clear_way(self) -> None:
+        """Somebody takes away what it is held up by."""
+        self._clear.set()
 
     def _hello(self) -> dict[str, Any]:
         return {
@@ -118,6 +125,7 @@ class FaultyRobot:
             await asyncio.sleep(self._step_s)
             if self._step == HELD_UP_IN and execution not in self.faults:
                 self.faults[execution] = time.time()
+                self._clear.clear()
                 await self._report(
                     type="issue", execution=execution, issue="blocked", step=self._step,
                     interrupts=True, detection={"camera": "forearm"},
@@ -131,10 +139,13 @@ class FaultyRobot:
     async def _look(self, command: str, look: dict[str, Any]) -> None:
         """Until what is expected is seen, for so long at most."""
         if look.get("expect") == "way_clear":
-            held_up_s = self.faults[self._start["execution"]]
-            left_s = held_up_s + CLEARED_AFTER_S - time.time()
-            await asyncio.sleep(max(0.0, min(left_s, look["within_s"])))
+            left_s = max(0.0, min(self._clear_in_s(), look["within_s"]))
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self._clear.wait(), left_s)
         await self._report(type="looked", command=command, **self._seen(look))
+
+    def _clear_in_s(self) -> float:
+        return self.faults[self._start["execution"]] + self._cleared_after_s - time.time()
 
     def _seen(self, look: dict[str, Any]) -> dict[str, Any]:
         now = {"yaw": 0.0, "time": time.monotonic()}
@@ -144,7 +155,7 @@ class FaultyRobot:
         if expect == "at_place":
             so = look["object"] in self._placed
         elif expect == "way_clear":
-            so = time.time() - self.faults[self._start["execution"]] >= CLEARED_AFTER_S
+            so = self._clear.is_set() or self._clear_in_s() <= 0.0
         return {
             "fulfilled": so,
             "objects": {name: {**pose, **now} for name, pose in self._poses.items()},

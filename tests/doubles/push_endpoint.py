@@ -3,6 +3,7 @@
 import base64
 import os
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -23,11 +24,12 @@ Message: TypeAdapter[Any] = TypeAdapter(PushMessage)
 
 @dataclass(frozen=True)
 class Pushed:
-    """One request as it came."""
+    """One request as it came, `at_s` seconds after the epoch."""
 
     path: str
     headers: dict[str, str]
     body: bytes
+    at_s: float = field(default_factory=time.time)
 
 
 @dataclass
