@@ -41,12 +41,13 @@ describe("numbers in events", () => {
 
   it("have their units, and points their axes", () => {
     const [begun] = events;
-    const raised = { ...begun, type: "issue_raised", robot: "pr2", last_seen: [0.1, 0.2, 0.7], away_m: 2.5, detection: { probability: 0.9, center: [3, 4] } };
+    const raised = { ...begun, type: "issue_raised", robot: "pr2", last_seen: [0.1, 0.2, 0.7], away_m: 2.5, detection: { probability: 0.9, center: [3, 4], measured: { force_n: 97 } } };
     const found = numbersOf([raised as unknown as Told]);
     expect(found.map(({ name, unit }) => [name, unit])).toEqual([
       ["issue raised: away", "m"],
       ["issue raised: detection, center, x", ""],
       ["issue raised: detection, center, y", ""],
+      ["issue raised: detection, measured, force", "N"],
       ["issue raised: detection, probability", ""],
       ["issue raised: last seen, x", ""],
       ["issue raised: last seen, y", ""],

@@ -67,7 +67,12 @@ class Blocked(ArmMonitor[BlockedParameters]):
 
     def check(self, view: ArmView) -> Detection | None:
         if view.contact is not None:
-            return Detection(camera="head", felt=True, explanation=_felt(view.contact))
+            return Detection(
+                camera="head",
+                felt=True,
+                explanation=_felt(view.contact),
+                measured={"force_n": view.contact.force_n, "tries": view.contact.tries},
+            )
         if view.step == BEFORE_FIRST_STEP and view.obstruction is not None:
             return Detection(
                 camera="head",

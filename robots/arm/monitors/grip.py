@@ -30,6 +30,7 @@ class GripMonitor(ArmMonitor[NoParameters]):
             area_px=0 if grip.blob is None else grip.blob.area_px,
             probability=sure,
             explanation=f"{grip.reason} ({_percent(sure)} % sure)",
+            measured={"opening_m": grip.opening_m, "width_m": grip.width_m},
         )
 
 

@@ -42,10 +42,14 @@ class LowBattery(BaseMonitor[LeastCharge]):
         if power.charging:
             return None
         told = f"my battery holds {100.0 * power.share:.0f} %"
+        measured = {"charge": power.share}
         if view.phase is Phase.CHARGE:
             waited_s = 0.0 if view.standing is None else view.standing.waited_s
             if waited_s < self.settings.contact_s:
                 return None
-            return Detection(camera=GAUGE, explanation=f"no current comes here, and {told}")
+            told = f"no current comes here, and {told}"
+            return Detection(camera=GAUGE, explanation=told, measured=measured)
         least = self.settings.last if power.to_charger else self.settings.low
-        return Detection(camera=GAUGE, explanation=told) if power.share < least else None
+        if power.share >= least:
+            return None
+        return Detection(camera=GAUGE, explanation=told, measured=measured)

@@ -6,9 +6,11 @@ from pydantic import Field
 
 from mend.robots.link.messages.values import (
     MOST_GUESSES,
+    MOST_MEASURED,
     Coordinate,
     Count,
     Identifier,
+    Measure,
     Message,
     Pixels,
     Sentence,
@@ -89,7 +91,8 @@ class Detection(Message):
     seen, or not seen, gives none. `explanation` is a clause that people are told: what the robot
     sensed. `guesses`: where a robot may be that is lost, likeliest first (`at F1-101`).
     `between`: the neighbouring places between which a way is barred, the one it came from first.
-    `robot`: that which is in the way, if it is a robot that has failed.
+    `robot`: that which is in the way, if it is a robot that has failed. `measured`: what the
+    monitor goes by, under names that end with their unit (`force_n`, `opening_m`).
     """
 
     camera: Word
@@ -105,6 +108,7 @@ class Detection(Message):
     guesses: Annotated[list[Word], Field(max_length=MOST_GUESSES)] = []
     between: Annotated[list[Word], Field(max_length=2)] = []
     robot: Word | None = None
+    measured: Annotated[dict[Word, Measure], Field(max_length=MOST_MEASURED)] = {}
 
 
 LASER = "laser"

@@ -27,6 +27,12 @@ MOST = 10_000
 MOST_GUESSES = 3
 """About so many places people are asked at most by a robot that is lost."""
 
+MOST_MEASURED = 16
+"""About so many figures one detection tells at most."""
+
+Measure = Annotated[float, Field(ge=-1e12, le=1e12)]
+"""A figure in the unit that its name tells."""
+
 Time = Annotated[float, Field(ge=-1e12, le=1e12)]
 """Seconds of the robot's clock; any zero, that of the calendar as well."""
 

@@ -141,6 +141,10 @@ def test_missed_and_dropped_never_speak_of_the_same_grip(state: GripState) -> No
             assert detection.expected == (80.0, 60.0)
             assert detection.probability is not None
             assert 0.9 < detection.probability < 1.0
+            reading = grip(state)
+            assert detection.measured == {
+                "opening_m": reading.opening_m, "width_m": reading.width_m,
+            }  # fmt: skip
             assert detection.explanation == (
                 "the fingers closed to 3 mm where the pink bar is 30 mm wide (99 % sure)"
             )
@@ -156,6 +160,7 @@ def test_blocked_says_what_was_felt_and_how_often() -> None:
     detection = monitor.check(replace(VIEW, step=5, contact=Contact(17.2, 3)))
     assert detection is not None
     assert detection.explanation == "17 N push against the arm, felt in 3 tries, each gentler"
+    assert detection.measured == {"force_n": 17.2, "tries": 3}
 
 
 def test_blocked_tries_more_gently_each_time() -> None:

@@ -46,6 +46,7 @@ def view(power: Power, phase: Phase = Phase.TRAVEL, waited_s: float = 5.0) -> Ba
 def test_it_asks_while_there_is_still_something_left(seen: BaseView, told: str | None) -> None:
     detection = LowBattery.create({}).check(seen)
     assert (None if detection is None else detection.explanation) == told
+    assert detection is None or detection.measured == {"charge": seen.power.share}
 
 
 def test_it_never_stops_in_an_elevator() -> None:
