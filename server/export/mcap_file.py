@@ -23,7 +23,7 @@ from mend.server.export.foxglove import (
 from mend.server.export.run_file import ShownPicture
 from mend.server.export.shown_frame import ShownBoxes, joints_of, transforms_of
 from mend.server.journal import events as ev
-from mend.server.poses.frame import Frame, decode
+from mend.server.poses.frame import DecodedFrame, Frame, decode
 from mend.server.poses.layout import Layout
 from mend.server.transcript_line import Line, Tone
 
@@ -102,7 +102,7 @@ class McapFile:
             return
         shown = decode(frame)
         layout = self._layout
-        if len(shown.joints) != len(layout.joints) or len(shown.objects) != len(layout.objects):
+        if not _fits(layout, shown):
             # Recorded before the robot showed what its last layout tells.
             return
         at_ns = self._ns(shown.time_s)
@@ -112,9 +112,18 @@ class McapFile:
         if update is not None:
             self._tell("/scene", update, at_ns)
         if layout.joints:
-            self._tell("/joints", joints_of(layout, shown, time), at_ns)
-        opening = Gripper(timestamp=time, opening_m=round(shown.opening_m, 6))
-        self._tell(f"/{layout.robot}/gripper", opening, at_ns)
+            self._tell("/joints", joints_of(layout.joints, shown.joints, time), at_ns)
+        self._tell_gripper(layout.robot, shown.opening_m, at_ns)
+        for arm in shown.arms:
+            of = layout.arms[arm.number]
+            if of.joints:
+                joints = joints_of(of.joints, arm.joints, time)
+                self._tell(f"/{of.robot}/joints", joints, at_ns)
+            self._tell_gripper(of.robot, arm.opening_m, at_ns)
+
+    def _tell_gripper(self, robot: str, opening_m: float, at_ns: int) -> None:
+        told = Gripper(timestamp=Time.of(at_ns), opening_m=round(opening_m, 6))
+        self._tell(f"/{robot}/gripper", told, at_ns)
 
     def take(self) -> bytes:
         return self._stream.take()
@@ -145,6 +154,19 @@ class McapFile:
         self._writer.add_message(
             self._channels[topic], at_ns, data, publish_time=at_ns, sequence=seq & 0xFFFFFFFF
         )
+
+
+def _fits(layout: Layout, frame: DecodedFrame) -> bool:
+    """Whether a frame holds what its run's last layout says."""
+    return (
+        len(frame.joints) == len(layout.joints)
+        and len(frame.objects) == len(layout.objects)
+        and len(frame.robots) == len(layout.robots)
+        and all(
+            arm.number < len(layout.arms) and len(arm.joints) == len(layout.arms[arm.number].joints)
+            for arm in frame.arms
+        )
+    )
 
 
 def schema_of(name: str, kind: type[BaseModel]) -> bytes:

@@ -36,7 +36,7 @@ def base_of(robot: str) -> str:
 
 
 def transforms_of(layout: Layout, frame: DecodedFrame, time: Time) -> FrameTransforms:
-    """Where the bases, the tool and the objects are."""
+    """Where the bases, the tools and the objects are."""
     base = base_of(layout.robot)
     placed = list(_bases(layout, frame))
     placed.append((base, f"{layout.robot}/tool", frame.tool))
@@ -44,7 +44,16 @@ def transforms_of(layout: Layout, frame: DecodedFrame, time: Time) -> FrameTrans
         (base, each.name, shown.pose)
         for each, shown in zip(layout.objects, frame.objects, strict=True)
     ]
+    placed += _arms(layout, frame)
     return FrameTransforms(transforms=[_transform(*each, time) for each in placed])
+
+
+def _arms(layout: Layout, frame: DecodedFrame) -> Iterator[tuple[str, str, PoseOfFrame]]:
+    for arm in frame.arms:
+        robot = layout.arms[arm.number].robot
+        if robot not in layout.robots:
+            yield base_of(layout.robot), base_of(robot), arm.base
+        yield base_of(robot), f"{robot}/tool", arm.tool
 
 
 def _bases(layout: Layout, frame: DecodedFrame) -> Iterator[tuple[str, str, PoseOfFrame]]:
@@ -55,9 +64,9 @@ def _bases(layout: Layout, frame: DecodedFrame) -> Iterator[tuple[str, str, Pose
             yield SCENE, base_of(robot), shown.pose
 
 
-def joints_of(layout: Layout, frame: DecodedFrame, time: Time) -> JointStates:
-    """The joints of the layout's robot, rad."""
-    named = zip(layout.joints, frame.joints, strict=True)
+def joints_of(names: Sequence[str], positions: Sequence[float], time: Time) -> JointStates:
+    """The joints of a robot, rad."""
+    named = zip(names, positions, strict=True)
     joints = [JointState(name=name, position=round(each, _DIGITS)) for name, each in named]
     return JointStates(timestamp=time, joints=joints)
 

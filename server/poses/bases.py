@@ -50,13 +50,39 @@ class Bases:
 
 def in_scene(frame: Frame, pose: PoseValues) -> PoseValues:
     """A pose of a robot's frame in the scene's; heights are the same in both."""
-    x, y, z, qx, qy, qz, qw = pose
     sine, cosine = math.sin(frame.yaw / 2), math.cos(frame.yaw / 2)
+    return joined((*frame.to_scene(0.0, 0.0), 0.0, 0.0, 0.0, sine, cosine), pose)
+
+
+def joined(frame: PoseValues, pose: PoseValues) -> PoseValues:
+    """A pose that is given in a frame, in that in which the frame is given."""
+    x, y, z = _turned(frame[3:], pose[:3])
+    return (frame[0] + x, frame[1] + y, frame[2] + z, *_product(frame[3:], pose[3:]))
+
+
+def seen_from(frame: PoseValues, pose: PoseValues) -> PoseValues:
+    """A pose in a frame, where both are given in the same one."""
+    back = (-frame[3], -frame[4], -frame[5], frame[6])
+    away = (pose[0] - frame[0], pose[1] - frame[1], pose[2] - frame[2])
+    return (*_turned(back, away), *_product(back, pose[3:]))
+
+
+_Vector = tuple[float, float, float]
+_Quaternion = tuple[float, float, float, float]
+
+
+def _turned(by: _Quaternion, vector: _Vector) -> _Vector:
+    back = (-by[0], -by[1], -by[2], by[3])
+    x, y, z, _ = _product(_product(by, (*vector, 0.0)), back)
+    return x, y, z
+
+
+def _product(a: _Quaternion, b: _Quaternion) -> _Quaternion:
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
     return (
-        *frame.to_scene(x, y),
-        z,
-        cosine * qx - sine * qy,
-        cosine * qy + sine * qx,
-        cosine * qz + sine * qw,
-        cosine * qw - sine * qz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
     )

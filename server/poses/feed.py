@@ -7,7 +7,8 @@ from typing import Protocol
 from uuid import UUID
 
 from mend.robots.link.messages import IDENTITY, Hello, PoseLayout, Poses
-from mend.server.poses.bases import Bases
+from mend.server.poses.arms import OtherArms
+from mend.server.poses.bases import Bases, in_scene
 from mend.server.poses.frame import Frame, encode
 from mend.server.poses.layout import RATE_HZ, Layout, lay_out
 from mend.server.poses.record import (
@@ -69,8 +70,8 @@ class Watcher:
 class RunPoses:
     """The poses of one run that goes on: those of the first of its robots that shows any.
 
-    And, where robots drive, the base frames of all that do. A frame is made once each of those has
-    shown where it is, or as one does so again, or `ROUND_S` later.
+    And the arms of the others, and, where robots drive, the base frames of all that do. A frame is
+    made once each of those has shown where it is, or as one does so again, or `ROUND_S` later.
     """
 
     def __init__(
@@ -86,6 +87,7 @@ class RunPoses:
         self._shown: tuple[Hello, PoseLayout] | None = None
         self._poses: Poses | None = None
         self._bases = Bases(state.frames)
+        self._arms = OtherArms(state.frames)
         self._driving: set[str] = set()
         self._round: set[str] = set()
         self._round_s = 0.0
@@ -100,6 +102,7 @@ class RunPoses:
             return
         if shows.drives:
             self._driving.add(hello.robot)
+        self._arms.connect(hello, shows)
         if self._shown is None or self._shown[0].robot == hello.robot:
             self._shown = hello, shows
         self._lay_out(*self._shown)
@@ -107,7 +110,9 @@ class RunPoses:
 
     def _lay_out(self, hello: Hello, shows: PoseLayout) -> None:
         address = None if shows.model is None else self._model(shows.model)
-        layout = lay_out(self._state, hello, shows, address, drives=bool(self._driving))
+        arms = self._arms.layouts(hello.robot, self._model)
+        drives = bool(self._driving)
+        layout = lay_out(self._state, hello, shows, address, drives=drives, arms=arms)
         if layout == self.layout:
             return
         self.layout, self.frame, self._poses = layout, None, None
@@ -129,6 +134,7 @@ class RunPoses:
             self._poses = poses
         if robot in self._driving:
             self._bases.take(robot, time_s, poses.base)
+        self._arms.take(robot, time_s, poses)
         self._round.add(robot)
         self._round_s = time_s
         if self._round >= self._showing(layout):
@@ -137,7 +143,7 @@ class RunPoses:
             self._timer = asyncio.get_running_loop().call_later(ROUND_S, self._end_round)
 
     def _showing(self, layout: Layout) -> set[str]:
-        return {layout.robot, *self._driving}
+        return {layout.robot, *self._driving, *(each.robot for each in layout.arms)}
 
     def _end_round(self) -> None:
         """Make a frame of what has come, but for robots whose parts nobody knows yet."""
@@ -150,10 +156,17 @@ class RunPoses:
         poses = self._poses or Poses(time=0.0, tool=IDENTITY, opening_m=0.0)
         if not layout.fits(poses):
             return
-        base = self._bases.of(layout.robot) or poses.base
-        poses = poses.model_copy(update={"base": base})
+        base = self._bases.of(layout.robot)
+        here = base or in_scene(self._state.frames[layout.robot], poses.base)
         bases = self._bases.at(self._round_s, layout.robots)
-        self._pass_on(encode(self._number, self._round_s, poses, bases))
+        arms = self._arms.at(self._round_s, layout.arms, here)
+        held = self._arms.held(layout.arms, arms)
+        objects = [
+            shown if shown.held else held.get(each.name, shown)
+            for each, shown in zip(layout.objects, poses.objects, strict=True)
+        ]
+        poses = poses.model_copy(update={"base": base or poses.base, "objects": objects})
+        self._pass_on(encode(self._number, self._round_s, poses, bases, arms))
 
     def _pass_on(self, frame: Frame) -> None:
         self.frame = frame

@@ -1,5 +1,6 @@
 """The layout: what the frames of a run hold, and what stands still around it."""
 
+from collections.abc import Sequence
 from typing import Literal
 from uuid import UUID
 
@@ -52,6 +53,14 @@ class ReachLayout(View):
     max_m: float
 
 
+class ArmLayout(View):
+    """The arm of another robot, and what frames tell of it."""
+
+    robot: str
+    model: str | None
+    joints: list[str]
+
+
 class Layout(View):
     """What every binary frame after it holds, in order, and what does not move."""
 
@@ -68,7 +77,9 @@ class Layout(View):
     simulated: bool
     rate_hz: float = RATE_HZ
     robots: list[str] = []
-    """Whose base frames each frame ends with, in this order; none where no robot drives."""
+    """Whose base frames each frame has, in this order; none where no robot drives."""
+    arms: list[ArmLayout] = []
+    """The robots beside `robot` that show an arm."""
 
     def fits(self, poses: Poses) -> bool:
         """Whether poses hold what this says."""
@@ -77,13 +88,19 @@ class Layout(View):
 
 
 def lay_out(
-    state: RunState, hello: Hello, shows: PoseLayout, model: str | None, *, drives: bool = False
+    state: RunState,
+    hello: Hello,
+    shows: PoseLayout,
+    model: str | None,
+    *,
+    drives: bool = False,
+    arms: Sequence[ArmLayout] = (),
 ) -> Layout:
     """The layout of a run with this robot; `model` is the address of its model files.
 
-    `drives`: whether any robot of the run does.
+    `drives`: whether any robot of the run does. `arms`: those of others.
     """
-    scene = state.scene
+    scene = state.scene if drives else state.frames[hello.robot].scene_to_robot(state.scene)
     return Layout(
         run=state.id,
         robot=hello.robot,
@@ -107,6 +124,7 @@ def lay_out(
         cameras=sorted(hello.cameras),
         simulated=hello.simulated,
         robots=list(state.frames) if drives else [],
+        arms=list(arms),
     )
 
 

@@ -26,6 +26,21 @@ describe("decodeFrame", () => {
     expect([...frame.robots[0]!.pose]).toEqual([2, 0, 3.5, 0, 0, 0, 1]);
   });
 
+  it("reads the arms of other robots at the end, with and without bases before them", () => {
+    const arms = [{ number: 2, x: 1.5, joints: [0.5, -0.5], opening: 0.0625, age: 0.25 }, { number: 0 }];
+    for (const robots of [[], [{ x: 2 }]]) {
+      const frame = decodeFrame(frameBytes({ joints: [1], objects: [{}], robots, arms }));
+      expect(frame.robots).toHaveLength(robots.length);
+      const [first, second] = frame.arms;
+      expect(first).toMatchObject({ number: 2, opening: 0.0625, age: 0.25 });
+      expect([...first!.joints]).toEqual([0.5, -0.5]);
+      expect(first!.base[0]).toBe(1.5);
+      expect([...first!.tool]).toEqual([0.25, 0, 0.75, 0, 0, 0, 1]);
+      expect([second!.number, second!.joints.length]).toEqual([0, 0]);
+    }
+    expect(decodeFrame(frameBytes({})).arms).toEqual([]);
+  });
+
   it("refuses what is shorter or longer than it says", () => {
     const bytes = frameBytes({ joints: [0], objects: [{}] });
     expect(() => decodeFrame(bytes.slice(0, 40))).toThrow(RangeError);

@@ -33,6 +33,14 @@ describe("between", () => {
     expect(xOf(almost)).toBeCloseTo(0.1);
   });
 
+  it("moves every arm, and mixes none with another", () => {
+    const armed = (time: number, number: number, angle: number) => decodeFrame(frameBytes({ time, arms: [{ number, joints: [angle], x: angle / 10 }] }));
+    const [half] = between(armed(1, 0, 0.2), armed(2, 0, 0.4), 0.5).arms;
+    expect(half?.joints[0]).toBeCloseTo(0.3);
+    expect(half?.base[0]).toBeCloseTo(0.03);
+    expect(between(armed(1, 0, 0.2), armed(2, 1, 0.4), 0.5).arms[0]?.joints[0]).toBeCloseTo(0.2);
+  });
+
   it("does not mix frames of different worlds", () => {
     const other = decodeFrame(frameBytes({ time: 2, joints: [] }));
     expect(between(frame(1, 0.1), other, 0.5).objects).toHaveLength(1);

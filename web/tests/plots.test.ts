@@ -77,7 +77,7 @@ describe("numbers in events", () => {
 });
 
 describe("numbers in recorded poses", () => {
-  const layout = { robot: "arm", joints: ["elbow_joint"], objects: [], robots: [] } as unknown as Layout;
+  const layout = { robot: "arm", joints: ["elbow_joint"], objects: [], robots: [], arms: [] } as unknown as Layout;
 
   it("are the gripper's, the tool's and the joints'", () => {
     expect(numbersIn(layout).map(({ name, unit }) => `${name} ${unit}`)).toEqual([
@@ -87,6 +87,15 @@ describe("numbers in recorded poses", () => {
       "tool, z m",
       "joint: elbow joint rad",
     ]);
+  });
+
+  it("are told of each arm where there are several", () => {
+    const two = { ...layout, arms: [{ robot: "right-0123abcd", model: null, joints: ["wrist"] }] } as unknown as Layout;
+    const numbers = numbersIn(two);
+    expect(numbers.map(({ name }) => name)).toContain("gripper of arm: opening");
+    const wrist = numbers.find(({ name }) => name === "joint of right: wrist");
+    const frames = [frameBytes({ time: 1 }), frameBytes({ time: 2, arms: [{ joints: [0.5] }] })].map((each) => decodeFrame(each));
+    expect(seriesOf(wrist as NonNullable<typeof wrist>, frames).points).toEqual([{ time: 2, value: 0.5, seq: null }]);
   });
 
   it("are read from the frames", () => {

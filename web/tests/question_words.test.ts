@@ -38,6 +38,7 @@ describe("a detection on a picture", () => {
     guesses: [],
     between: [],
     robot: null,
+    measured: {},
   };
 
   it("is scaled to the picture, which may be an enlarged one", () => {

@@ -6,14 +6,23 @@ import struct
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mend.robots.link.messages import Poses, ShownPose
+from mend.robots.link.messages import IDENTITY, Poses, ShownPose
+from mend.server.poses.arms import SeenArm
 from mend.server.poses.bases import SeenBase
-from mend.server.poses.frame import encode, framed, time_of, unframed
+from mend.server.poses.frame import decode, encode, framed, time_of, unframed
 
 number = st.floats(-1e6, 1e6, width=32)
 pose = st.tuples(*[number] * 7)
 shown = st.builds(
     ShownPose, pose=pose, held=st.booleans(), gone=st.booleans(), hidden=st.booleans()
+)
+
+told_poses = st.builds(
+    Poses,
+    time=st.just(0.0),
+    joints=st.lists(number, max_size=8),
+    tool=pose,
+    opening_m=number,
 )
 
 
@@ -64,6 +73,43 @@ def test_a_frame_can_be_read_as_documented(
     after += 60 + 32 * len(objects)
     for index, seen in enumerate(bases):
         assert struct.unpack_from("<8f", frame, after + 32 * index) == (*seen.pose, seen.age_s)
+    assert decode(frame).arms == []
+
+
+@given(
+    bases=st.lists(st.builds(SeenBase, pose, st.floats(0, math.inf, width=32)), max_size=3),
+    arms=st.lists(
+        st.builds(SeenArm, st.integers(0, 63), pose, st.floats(0, 1e6, width=32), told_poses),
+        min_size=1,
+        max_size=3,
+    ),
+)
+def test_other_arms_follow_the_bases_and_say_how_long_they_are(
+    bases: list[SeenBase], arms: list[SeenArm]
+) -> None:
+    shown = Poses(time=0.0, tool=IDENTITY, opening_m=0.0)
+    frame = encode(1, 2.0, shown, bases, arms)
+    length, mark = struct.unpack("<I4s", frame[-8:])
+    assert mark == b"ARMS"
+    assert len(frame) == 76 + 32 * len(bases) + length + 8
+    after = 76 + 32 * len(bases)
+    for arm in arms:
+        poses = arm.poses
+        joints = len(poses.joints)
+        assert struct.unpack_from("<HH", frame, after) == (arm.number, joints)
+        assert struct.unpack_from("<16f", frame, after + 4) == (
+            *arm.base, *poses.tool, poses.opening_m, arm.age_s,
+        )  # fmt: skip
+        assert list(struct.unpack_from(f"<{joints}f", frame, after + 68)) == poses.joints
+        after += 68 + 4 * joints
+    assert after == len(frame) - 8
+    read = decode(frame)
+    assert [(each.pose, each.age_s) for each in read.robots] == [
+        (each.pose, each.age_s) for each in bases
+    ]
+    assert [(each.number, each.base, each.tool, list(each.joints)) for each in read.arms] == [
+        (each.number, each.base, each.poses.tool, each.poses.joints) for each in arms
+    ]
 
 
 @given(st.lists(st.binary(min_size=16, max_size=64), max_size=6), st.integers(0, 40))

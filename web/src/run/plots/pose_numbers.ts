@@ -2,7 +2,7 @@
 import { plain, withoutRun } from "../../tree/words";
 import * as rest from "../../wire/rest";
 import type { Layout } from "../../wire/types";
-import { decodeFrames, type Frame } from "../scene/decode";
+import { type ArmPose, decodeFrames, type Frame } from "../scene/decode";
 import type { Point, Series } from "./series";
 
 /** Frames are told by the millisecond in the address of the next ones. */
@@ -27,15 +27,22 @@ export function numbersIn(layout: Layout): PoseNumber[] {
       unit: "m",
       of: (frame) => poseOf(frame)?.[index] ?? null,
     }));
-  return [
-    { id: "poses/opening", name: "gripper: opening", unit: "m", of: (frame) => frame.opening },
-    ...placed("poses/tool", "tool", (frame) => frame.tool),
-    ...layout.joints.map((joint, index) => ({
-      id: `poses/joint/${joint}`,
-      name: `joint: ${plain(joint)}`,
+  const held = (id: string, of: string, joints: readonly string[], armOf: (frame: Frame) => ArmPose | null): PoseNumber[] => [
+    { id: `${id}/opening`, name: `gripper${of}: opening`, unit: "m", of: (frame) => armOf(frame)?.opening ?? null },
+    ...placed(`${id}/tool`, `tool${of}`, (frame) => armOf(frame)?.tool ?? null),
+    ...joints.map((joint, index) => ({
+      id: `${id}/joint/${joint}`,
+      name: `joint${of}: ${plain(joint)}`,
       unit: "rad",
-      of: (frame: Frame) => frame.joints[index] ?? null,
+      of: (frame: Frame) => armOf(frame)?.joints[index] ?? null,
     })),
+  ];
+  const of = (robot: string) => (layout.arms.length > 0 ? ` of ${withoutRun(robot)}` : "");
+  return [
+    ...held("poses", of(layout.robot), layout.joints, (frame) => frame),
+    ...layout.arms.flatMap(({ robot, joints }, number) =>
+      held(`poses/${robot}`, of(robot), joints, (frame) => frame.arms.find((each) => each.number === number) ?? null),
+    ),
     ...layout.robots.flatMap((robot, index) =>
       placed(`poses/base/${robot}`, `base of ${withoutRun(robot)}`, (frame) => {
         const base = frame.robots[index];

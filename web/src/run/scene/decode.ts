@@ -18,21 +18,37 @@ export interface ShownBase {
   readonly age: number;
 }
 
-/** Where everything is at one moment of a run; poses but those of bases are in the robot's base frame. */
-export interface Frame {
-  /** Seconds of the run's clock. */
-  readonly time: number;
-  readonly number: number;
+/** How an arm is held. */
+export interface ArmPose {
   /** Radians, in the order of the layout's joints. */
   readonly joints: Float32Array;
-  readonly base: PoseValues;
   readonly tool: PoseValues;
   /** Metres between the finger tips. */
   readonly opening: number;
+}
+
+/** The arm of another robot; its tool is in its own base frame. */
+export interface ShownArm extends ArmPose {
+  /** Its place among the layout's `arms`. */
+  readonly number: number;
+  /** Its base frame in that of the layout's robot. */
+  readonly base: PoseValues;
+  /** How old that is, in seconds of the run's clock. */
+  readonly age: number;
+}
+
+/** Where everything is at one moment of a run; poses but those of bases are in the robot's base frame. */
+export interface Frame extends ArmPose {
+  /** Seconds of the run's clock. */
+  readonly time: number;
+  readonly number: number;
+  readonly base: PoseValues;
   /** In the order of the layout's objects. */
   readonly objects: readonly ShownObject[];
   /** In the order of the layout's robots. */
   readonly robots: readonly ShownBase[];
+  /** Of other robots, as far as they have told anything. */
+  readonly arms: readonly ShownArm[];
 }
 
 const HEAD_BYTES = 16;
@@ -40,6 +56,10 @@ const FIXED_BYTES = 76;
 const OBJECT_BYTES = 32;
 const ROBOT_BYTES = 32;
 const LENGTH_BYTES = 4;
+const ARM_BYTES = 68;
+const ARMS_END_BYTES = 8;
+/** `ARMS`, as a little-endian number. */
+const ARMS = 0x534d5241;
 const POSE_VALUES = 7;
 const HELD = 1;
 const GONE = 2;
@@ -52,7 +72,8 @@ export function decodeFrame(bytes: ArrayBuffer, start = 0, length = bytes.byteLe
   const jointCount = view.getUint16(12, true);
   const objectCount = view.getUint16(14, true);
   const expected = FIXED_BYTES + 4 * jointCount + OBJECT_BYTES * objectCount;
-  const robotCount = (length - expected) / ROBOT_BYTES;
+  const armsAt = length - armsBytes(view);
+  const robotCount = (armsAt - expected) / ROBOT_BYTES;
   if (robotCount < 0 || !Number.isInteger(robotCount)) {
     throw new RangeError(
       `a frame of ${jointCount} joints and ${objectCount} objects has ${expected} bytes and 32 a robot, not ${length}`,
@@ -69,7 +90,32 @@ export function decodeFrame(bytes: ArrayBuffer, start = 0, length = bytes.byteLe
     opening: view.getFloat32(base + 8 * POSE_VALUES, true),
     objects: Array.from({ length: objectCount }, (_, index) => object(view, objects + OBJECT_BYTES * index)),
     robots: Array.from({ length: robotCount }, (_, index) => robot(view, expected + ROBOT_BYTES * index)),
+    arms: arms(view, armsAt),
   };
+}
+
+/** How many of the last bytes tell of other arms. */
+function armsBytes(view: DataView): number {
+  const end = view.byteLength - ARMS_END_BYTES;
+  return view.getUint32(end + 4, true) === ARMS ? view.getUint32(end, true) + ARMS_END_BYTES : 0;
+}
+
+function arms(view: DataView, first: number): ShownArm[] {
+  const found: ShownArm[] = [];
+  let at = first;
+  while (at < view.byteLength - ARMS_END_BYTES) {
+    const joints = view.getUint16(at + 2, true);
+    found.push({
+      number: view.getUint16(at, true),
+      base: floats(view, at + 4, POSE_VALUES),
+      tool: floats(view, at + 32, POSE_VALUES),
+      opening: view.getFloat32(at + 60, true),
+      age: view.getFloat32(at + 64, true),
+      joints: floats(view, at + ARM_BYTES, joints),
+    });
+    at += ARM_BYTES + 4 * joints;
+  }
+  return found;
 }
 
 /** Read recorded frames, each after its length; one that is torn off at the end is left out. */

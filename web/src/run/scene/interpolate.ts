@@ -1,6 +1,6 @@
 // What lies between two frames, and when to show it: a little behind what has come, so that there
 // nearly always is a frame on both sides.
-import type { Frame, PoseValues, ShownBase, ShownObject } from "./decode";
+import type { ArmPose, Frame, PoseValues, ShownArm, ShownBase, ShownObject } from "./decode";
 
 export const DELAY_MS = 100;
 
@@ -76,20 +76,38 @@ export function between(from: Frame, to: Frame, share: number): Frame {
   return {
     time: mix(from.time, to.time, part),
     number: from.number,
-    joints: mixJoints(from.joints, to.joints, part),
     base: mixPoses(from.base, to.base, part),
-    tool: mixPoses(from.tool, to.tool, part),
-    opening: mix(from.opening, to.opening, part),
+    ...mixArmPoses(from, to, part),
     objects: from.objects.map((each, index) => mixObjects(each, to.objects[index] as ShownObject, part)),
     robots: from.robots.map((each, index) => mixRobots(each, to.robots[index] as ShownBase, part, to.time - from.time)),
+    arms: from.arms.map((each, index) => mixArms(each, to.arms[index] as ShownArm, part)),
   };
+}
+
+function mixArmPoses(from: ArmPose, to: ArmPose, share: number): ArmPose {
+  return {
+    joints: mixJoints(from.joints, to.joints, share),
+    tool: mixPoses(from.tool, to.tool, share),
+    opening: mix(from.opening, to.opening, share),
+  };
+}
+
+function mixArms(from: ShownArm, to: ShownArm, share: number): ShownArm {
+  const { number } = from;
+  const [base, age] = [mixPoses(from.base, to.base, share), mix(from.age, to.age, share)];
+  return { number, base, age, ...mixArmPoses(from, to, share) };
 }
 
 function alike(from: Frame, to: Frame): boolean {
   return (
     from.joints.length === to.joints.length &&
     from.objects.length === to.objects.length &&
-    from.robots.length === to.robots.length
+    from.robots.length === to.robots.length &&
+    from.arms.length === to.arms.length &&
+    from.arms.every((each, index) => {
+      const then = to.arms[index] as ShownArm;
+      return each.number === then.number && each.joints.length === then.joints.length;
+    })
   );
 }
 

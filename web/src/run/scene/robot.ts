@@ -3,7 +3,7 @@ import { BoxGeometry, Color, Group, LoadingManager, Mesh, MeshLambertMaterial, S
 import { STLLoader } from "three/addons/loaders/STLLoader.js";
 import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import URDFLoader, { type URDFRobot } from "urdf-loader";
-import type { Frame } from "./decode";
+import type { ArmPose } from "./decode";
 import { setPose } from "./poses";
 
 // As the simulator paints it; the model's own colours are for debugging.
@@ -13,7 +13,7 @@ const CREASE_RAD = 0.6;
 
 export interface DrawnRobot {
   readonly root: Group;
-  show(frame: Frame): void;
+  show(arm: ArmPose): void;
 }
 
 /** Load a robot's model. Rejects when it cannot be had; its meshes may come after it (`changed`). */
@@ -41,8 +41,8 @@ export async function loadRobot(
   root.add(robot);
   return {
     root,
-    show(frame) {
-      for (const [index, name] of joints.entries()) robot.setJointValue(name, frame.joints[index] as number);
+    show(arm) {
+      for (const [index, name] of joints.entries()) robot.setJointValue(name, arm.joints[index] as number);
     },
   };
 }
@@ -79,9 +79,9 @@ export function createGripper(): DrawnRobot {
   root.add(...fingers, box([0.04, 0.13, 0.05], -0.08, metal), box([0.3, 0.05, 0.05], -0.25, arm));
   return {
     root,
-    show(frame) {
-      setPose(root, frame.tool);
-      const aside = frame.opening / 2 + FINGER_M[1] / 2;
+    show(arm) {
+      setPose(root, arm.tool);
+      const aside = arm.opening / 2 + FINGER_M[1] / 2;
       fingers[0].position.y = aside;
       fingers[1].position.y = -aside;
     },

@@ -5,6 +5,7 @@ import type { Layout } from "../../wire/types";
 import { theme } from "../../state/preferences";
 import { CameraButtons } from "./camera_buttons";
 import { createNames } from "./names";
+import { withoutRun } from "../../tree/words";
 import { plain } from "./interventions";
 import { handlePointer } from "./pointer";
 import type { Poses, Pointed, SceneView } from "./scene_view";
@@ -47,7 +48,8 @@ export function SceneCanvas(props: Props) {
     const host = overlay.current as HTMLElement;
     const marks = createNames(host, () => [...(host.parentElement?.querySelectorAll<HTMLElement>(".scene-tools") ?? [])]);
     const shownName = (name: string) => {
-      const { doers, pointed } = latest.current;
+      const { doers, pointed, layout } = latest.current;
+      if (name === layout.robot || layout.arms.some((each) => each.robot === name)) return withoutRun(name);
       const doer = doers.get(name);
       if (doer !== undefined) return `${plain(name)} · ${doer}`;
       return named.current || name === pointed ? plain(name) : null;

@@ -1,13 +1,12 @@
 // The 3-D scene of one layout: shows frames, says what is under a pointer and where names belong.
 import { Group, type Mesh, type Object3D, Raycaster, Vector2, Vector3 } from "three";
 import type { Layout } from "../../wire/types";
+import { createArms } from "./arms";
 import type { Frame } from "./decode";
 import { createFurniture } from "./furniture";
 import { readPalette } from "./palette";
 import { createParts, type Part } from "./parts";
 import { setPose } from "./poses";
-import { release } from "./release";
-import { createGripper, type DrawnRobot, loadRobot } from "./robot";
 import { createStage } from "./stage";
 
 /** Where poses come from: what to show at `now`, and whether that changes without more of them. */
@@ -22,7 +21,7 @@ export type Pointed =
   /** Metres in the robot's base frame. */
   | { readonly kind: "table"; readonly x: number; readonly y: number };
 
-/** Where the middle of an object is in the picture, in CSS pixels. */
+/** Where the middle of an object is in the picture, or the tool of one of several robots, in CSS pixels. */
 export interface Spot {
   readonly name: string;
   readonly x: number;
@@ -60,16 +59,14 @@ export function createSceneView(
   // The robot's base frame; all else of a frame is given in it.
   const base = new Group();
   base.add(furniture.root, parts.root);
-  let robot: DrawnRobot | null = null;
   let shown: Frame | null = null;
-  let disposed = false;
 
   const show = (now: number) => {
     const frame = poses.at(now);
     if (frame !== null && frame !== shown) {
       setPose(base, frame.base);
       parts.show(frame);
-      robot?.show(frame);
+      arms.show(frame);
       shown = frame;
     }
     return poses.moving(now);
@@ -79,23 +76,8 @@ export function createSceneView(
   const [x, y] = layout.table.center;
   stage.orbit.lookAt(new Vector3(x * 0.8, y, layout.table.height_m));
 
-  const join = (loaded: DrawnRobot) => {
-    if (disposed) {
-      release(loaded.root);
-      return;
-    }
-    robot = loaded;
-    base.add(loaded.root);
-    if (shown !== null) loaded.show(shown);
-    stage.invalidate();
-  };
-  if (layout.model === null) join(createGripper());
-  else {
-    loadRobot(layout.model, layout.joints, stage.invalidate).then(join, () => {
-      if (!disposed) modelMissing();
-      join(createGripper());
-    });
-  }
+  const arms = createArms(layout, stage.invalidate, modelMissing);
+  base.add(arms.root);
 
   const project = (at: Vector3) => {
     const { x: right, y: up, z } = at.project(stage.camera);
@@ -105,7 +87,15 @@ export function createSceneView(
   const projectPart = ({ root, layout: { size_m } }: Part, share: number) =>
     project(root.localToWorld(new Vector3(0, 0, size_m[2] * share)));
 
-  const spots = (): Spot[] =>
+  const toolSpots = (): Spot[] =>
+    arms.tools().flatMap(({ robot, at }) => {
+      const spot = project(at);
+      return spot === null ? [] : [{ name: robot, ...spot, rise: 0, held: false }];
+    });
+
+  const spots = (): Spot[] => [...partSpots(), ...toolSpots()];
+
+  const partSpots = (): Spot[] =>
     parts.all.flatMap((part, index) => {
       const middle = part.root.visible && part.layout.kind === "object" ? projectPart(part, 0.5) : null;
       const top = middle === null ? null : projectPart(part, 1);
@@ -129,8 +119,7 @@ export function createSceneView(
       const { clientWidth, clientHeight } = canvas;
       ray.setFromCamera(new Vector2((2 * left) / clientWidth - 1, 1 - (2 * top) / clientHeight), stage.camera);
       const visible = parts.all.filter((each) => each.root.visible);
-      const solid: Object3D[] = [furniture.top, ...visible.flatMap((each) => bodiesOf(each))];
-      if (robot !== null) solid.push(robot.root);
+      const solid: Object3D[] = [furniture.top, arms.root, ...visible.flatMap((each) => bodiesOf(each))];
       const [hit] = ray.intersectObjects(solid, true);
       if (hit === undefined) return null;
       const part = visible.find((each) => bodiesOf(each).includes(hit.object));
@@ -155,7 +144,7 @@ export function createSceneView(
     resetCamera: stage.orbit.reset,
     repaint,
     dispose() {
-      disposed = true;
+      arms.dispose();
       stage.dispose();
     },
   };
