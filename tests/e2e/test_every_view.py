@@ -24,9 +24,23 @@ BOTH: Themes = ("light", "dark")
 NEITHER: Themes = ()
 """A page as wide as the phone: axe has gone through it there."""
 
+# Controls that look like plain text where a page has the system's colours alone.
+UNMARKED = """() => [...document.querySelectorAll("button, .button")]
+    .filter(each => each.checkVisibility() && each.closest("svg") === null)
+    .filter(each => {
+        const { borderTopWidth, borderBottomWidth, textDecorationLine } = getComputedStyle(each);
+        return borderTopWidth === "0px" && borderBottomWidth === "0px"
+            && textDecorationLine === "none";
+    })
+    .map(each => each.getAttribute("aria-label") ?? each.className ?? each.textContent)"""
+
+ZOOMED = ViewportSize(width=320, height=256)
+"""A window of 1280 x 1024 px at 400 %."""
+
 # How wide, and in which themes axe goes through it, which takes longer than all else.
 LOOKED_AT: Sequence[tuple[ViewportSize, Themes]] = [
     (PHONE, sample(("light",), BOTH)),
+    (ZOOMED, NEITHER),
     *(
         # Tall: all of a page is looked at, and not only what the chance of scrolling shows of it.
         (ViewportSize(width=width, height=TALL), themes)
@@ -56,3 +70,5 @@ async def test_nothing_is_wrong_with_it(
             assert await violations(page, RULES[theme]) == [], f"{size}, {theme}"
         beyond = await page.evaluate("document.documentElement.scrollWidth - innerWidth")
         assert beyond <= 0, f"{beyond} px too wide at {size}"
+    await page.emulate_media(forced_colors="active")
+    assert await page.evaluate(UNMARKED) == []
