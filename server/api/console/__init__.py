@@ -52,6 +52,8 @@ Accepted = Annotated[str, Header(alias="accept-encoding")]
 @router.get("/runs/{run}")
 @router.get("/trees")
 @router.get("/trees/{tree}")
+@router.get("/scenes")
+@router.get("/scenes/{scene}")
 @router.get("/edit")
 @router.get("/edit/{tree}")
 @router.get("/start")
