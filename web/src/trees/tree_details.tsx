@@ -7,7 +7,7 @@ import { connection } from "../state/service";
 import * as rest from "../wire/rest";
 import type { DocumentView } from "../wire/types";
 import { DefinitionDrawing } from "./definition_drawing";
-import { dropDraft } from "./draft";
+import { dropDraft } from "../document/draft";
 
 export function TreeDetails({ tree }: { tree: string }) {
   const [found, setFound] = useState<DocumentView | null>(null);
