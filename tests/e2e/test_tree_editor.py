@@ -101,8 +101,8 @@ async def test_a_mistake_is_shown_at_its_node_and_put_right_in_the_form(
     await page.get_by_role("button", name="Add a leaf").click()
     added = "    - {behavior: pick_and_place, object: blue_leg, place: blue_leg}\n"
     await expect(text_of(page)).to_have_value(SHELF.replace(LEG, LEG + added))
-    await form.get_by_label("Name").fill("last_leg")
-    await form.get_by_label("Name").press("Enter")
+    await form.get_by_label("Name of this node").fill("last_leg")
+    await form.get_by_label("Name of this node").press("Enter")
     await expect(drawn(page, "last leg")).to_be_visible()
     await page.get_by_role("button", name="Wrap in OR").click()
     await expect(text_of(page)).to_have_value(

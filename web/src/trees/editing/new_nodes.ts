@@ -42,11 +42,15 @@ export function withFreeNames(node: PlainNode, tree: PlainNode): PlainNode {
 
 function renamed(node: PlainNode, taken: Set<string>): PlainNode {
   const kind = goalKindOf(node);
+  const own = typeof node.name === "string" ? { name: freeNameLike(node.name, taken) } : {};
   const children = kind === null ? {} : { [kind]: childrenOf(node).map((child) => renamed(child, taken)) };
-  if (typeof node.name !== "string") return { ...node, ...children };
-  const stem = node.name.replace(/_\d+$/, "");
-  let name = node.name;
+  return { ...node, ...own, ...children };
+}
+
+function freeNameLike(wanted: string, taken: Set<string>): string {
+  const stem = wanted.replace(/_\d+$/, "");
+  let name = wanted;
   for (let number = 2; taken.has(name); number++) name = `${stem}_${number}`;
   taken.add(name);
-  return { ...node, ...children, name };
+  return name;
 }

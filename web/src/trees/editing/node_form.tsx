@@ -39,7 +39,7 @@ export function NodeForm(props: NodeFormProps) {
       ))}
       <div class="node-fields">
         <div class="field">
-          <label for="node-name">Name</label>
+          <label for="node-name">Name of this node</label>
           <input
             id="node-name"
             class="mono"
