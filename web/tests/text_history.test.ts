@@ -1,5 +1,7 @@
 import { describe, expect, it } from "vitest";
-import { begunWith, changed, endOfDifference, redone, typed, undone } from "../src/document/text_history";
+import { begunWith, changed, endOfDifference, goneOn, redone, type TextHistory, undone } from "../src/document/text_history";
+
+const typed = (history: TextHistory, text: string, atMs: number) => goneOn(history, text, "typing", atMs);
 
 describe("the history of a text", () => {
   it("goes back over what was typed at a time, and over each change in the drawing", () => {
@@ -21,6 +23,12 @@ describe("the history of a text", () => {
     const other = changed(undone(history), "abX");
     expect(redone(other)).toBe(other);
     expect(changed(other, "abX")).toBe(other);
+  });
+
+  it("tells typing from moving with keys", () => {
+    const history = goneOn(goneOn(typed(begunWith("a"), "ab", 0), "ab1", "moving", 10), "ab2", "moving", 20);
+    expect(undone(history).text).toBe("ab");
+    expect(undone(undone(history)).text).toBe("a");
   });
 
   it("keeps no more than there is room for", () => {

@@ -4,42 +4,44 @@ export interface TextHistory {
   past: readonly string[];
   text: string;
   future: readonly string[];
-  /** When it was typed in last (ms); null where something else was done last. */
-  typedAt: number | null;
+  /** What was done last that may go on, and when (ms); null where nothing was. */
+  going: { by: Going; atMs: number } | null;
 }
 
-/** What is typed without a longer pause goes back in one step. */
+/** What goes back in one step where it goes on without a pause: typing, and moving with keys. */
+export type Going = "typing" | "moving";
+
 const PAUSE_MS = 1000;
 const MOST_STATES = 200;
 const MOST_CHARACTERS = 16 * 1024 * 1024;
 
 export function begunWith(text: string): TextHistory {
-  return { past: [], text, future: [], typedAt: null };
+  return { past: [], text, future: [], going: null };
 }
 
-export function typed(history: TextHistory, text: string, atMs: number): TextHistory {
+export function goneOn(history: TextHistory, text: string, by: Going, atMs: number): TextHistory {
   if (text === history.text) return history;
-  const goesOn = history.typedAt !== null && atMs - history.typedAt < PAUSE_MS;
-  const past = goesOn ? history.past : kept(history);
-  return { past, text, future: [], typedAt: atMs };
+  const { going } = history;
+  const past = going?.by === by && atMs - going.atMs < PAUSE_MS ? history.past : kept(history);
+  return { past, text, future: [], going: { by, atMs } };
 }
 
 /** A change that is a step of its own. */
 export function changed(history: TextHistory, text: string): TextHistory {
   if (text === history.text) return history;
-  return { past: kept(history), text, future: [], typedAt: null };
+  return { past: kept(history), text, future: [], going: null };
 }
 
 export function undone(history: TextHistory): TextHistory {
   const text = history.past.at(-1);
   if (text === undefined) return history;
-  return { past: history.past.slice(0, -1), text, future: [history.text, ...history.future], typedAt: null };
+  return { past: history.past.slice(0, -1), text, future: [history.text, ...history.future], going: null };
 }
 
 export function redone(history: TextHistory): TextHistory {
   const [text, ...future] = history.future;
   if (text === undefined) return history;
-  return { past: [...history.past, history.text], text, future, typedAt: null };
+  return { past: [...history.past, history.text], text, future, going: null };
 }
 
 /** The past with the present: as much of it as there is room for, the oldest goes first. */

@@ -1,6 +1,6 @@
 // The text that is edited: what it is, what it was, and how it goes back.
 import { useRef, useState } from "preact/hooks";
-import { begunWith, changed, endOfDifference, redone, type TextHistory, typed, undone } from "./text_history";
+import { begunWith, changed, endOfDifference, goneOn, redone, type TextHistory, undone } from "./text_history";
 import type { Caret } from "./text_editor";
 
 export interface EditedText {
@@ -9,6 +9,8 @@ export interface EditedText {
   canRedo: boolean;
   caret: Caret | null;
   type(text: string): void;
+  /** Change it by one of several keys that go back together. */
+  move(text: string): void;
   /** Change it in one step, as an action in a drawing does. */
   change(text: string): void;
   undo(): void;
@@ -34,7 +36,8 @@ export function useText(first: string, onText: (text: string, before: string) =>
     canUndo: history.past.length > 0,
     canRedo: history.future.length > 0,
     caret,
-    type: (text) => become(typed(now.current, text, performance.now()), false),
+    type: (text) => become(goneOn(now.current, text, "typing", performance.now()), false),
+    move: (text) => become(goneOn(now.current, text, "moving", performance.now()), false),
     change: (text) => become(changed(now.current, text), false),
     undo: () => become(undone(now.current), true),
     redo: () => become(redone(now.current), true),

@@ -51,8 +51,7 @@ function SceneEditing({ editing, source, readable, selected, onSelect }: SceneEd
     if (!readable) return setSaid("The text cannot be read now: put its mistakes right first.");
     try {
       const next = moved(text.text, one, inFile(one, source, to));
-      // Steps with the keys that follow one another go back together, as what is typed does.
-      if (step) text.type(next);
+      if (step) text.move(next);
       else text.change(next);
       setSaid("");
     } catch (error) {
