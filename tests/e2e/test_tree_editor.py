@@ -107,6 +107,7 @@ async def test_a_mistake_is_shown_at_its_node_and_put_right_in_the_form(
     await page.get_by_role("button", name="Wrap in OR").click()
     await expect(text_of(page)).to_have_value(
         SHELF.replace(
-            LEG, LEG + "    - or:\n        " + added.strip().replace("{", "{name: last_leg, ") + "\n"
+            LEG,
+            LEG + "    - or:\n        " + added.strip().replace("{", "{name: last_leg, ") + "\n",
         )
     )

@@ -150,8 +150,10 @@ function ThingName({ thing, frame, room, always }: { thing: Thing; frame: ViewFr
   const letters = kind === "robot" ? 14 : Math.floor(room / LETTER_PX);
   const name = always ? plain(thing.name) : kind === "place" ? "" : shortened(plain(thing.name), letters);
   if (name === "") return null;
+  const half = (name.length * LETTER_PX) / 2;
+  const middle = Math.min(Math.max(frame.left(pose.y), half), frame.width - half);
   return (
-    <text class="thing-name" x={frame.left(pose.y)} y={frame.top(pose.x) + (kind === "robot" ? 32 : 4)} aria-hidden="true">
+    <text class="thing-name" x={middle} y={frame.top(pose.x) + (kind === "robot" ? 32 : 4)} aria-hidden="true">
       {name}
     </text>
   );
