@@ -5,6 +5,8 @@ import type { Caret } from "./text_editor";
 
 export interface EditedText {
   text: string;
+  /** Whether it is being typed in. */
+  typing: boolean;
   canUndo: boolean;
   canRedo: boolean;
   caret: Caret | null;
@@ -33,6 +35,7 @@ export function useText(first: string, onText: (text: string, before: string) =>
   };
   return {
     text: history.text,
+    typing: history.going?.by === "typing",
     canUndo: history.past.length > 0,
     canRedo: history.future.length > 0,
     caret,

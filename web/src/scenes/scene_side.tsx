@@ -1,21 +1,19 @@
 // The scene of the text beside it: drawn from the text, and changed in it.
 import { useMemo, useRef, useState } from "preact/hooks";
 import type { Editing } from "../document/document_editor";
-import { plain } from "../tree/words";
-import { CannotEdit } from "../yaml_text/source";
-import { moved, wrapped } from "./moved_text";
-import { type SceneAction, sceneActionOf } from "./scene_keys";
-import { type Pose, readScene, type SceneSource, type Thing } from "./scene_source";
+import { useRead } from "../document/use_read";
+import { sceneActionOf } from "./scene_keys";
+import { readScene, type SceneSource, type Thing } from "./scene_source";
+import { SceneTools } from "./scene_tools";
 import { ThingForm } from "./thing_form";
 import { keyOf, thingProblems } from "./thing_problems";
 import { TopView } from "./top_view";
+import { useSceneHands } from "./use_scene_hands";
 import "../trees/editing/editing.css";
 import "./scenes.css";
 
 export function SceneSide({ editing }: { editing: Editing }) {
-  const { text } = editing.text;
-  const source = useMemo(() => readScene(text), [text]);
-  const [selected, setSelected] = useState("");
+  const { text, says: source } = useRead(editing.text, readScene);
   const last = useRef<SceneSource | null>(null);
   if (source !== null) last.current = source;
   const shown = source ?? last.current;
@@ -24,7 +22,7 @@ export function SceneSide({ editing }: { editing: Editing }) {
   return (
     <>
       {source === null && <p class="small quiet">As it was before the mistakes:</p>}
-      <SceneEditing editing={editing} source={shown} readable={source !== null} selected={selected} onSelect={setSelected} />
+      <SceneEditing editing={editing} source={shown} current={source !== null && text === editing.text.text} />
     </>
   );
 }
@@ -33,75 +31,40 @@ interface SceneEditingProps {
   editing: Editing;
   source: SceneSource;
   /** Whether the source is what the text says now. */
-  readable: boolean;
-  selected: string;
-  onSelect: (key: string) => void;
+  current: boolean;
 }
 
-function SceneEditing({ editing, source, readable, selected, onSelect }: SceneEditingProps) {
+function SceneEditing({ editing, source, current }: SceneEditingProps) {
   const { text, checked, toLine } = editing;
-  const [said, setSaid] = useState("");
+  const [wanted, setWanted] = useState("");
   const [world, setWorld] = useState("");
   const view = useRef<HTMLDivElement>(null);
+  const hands = useSceneHands(text, source, current);
   const problems = useMemo(() => thingProblems(source, checked), [source, checked]);
   const knowing = checked.worlds.filter(({ reach }) => reach.length > 0);
   const limits = knowing.find((each) => each.world === world) ?? knowing[0];
-  const thing = source.things.find((each) => keyOf(each) === selected) ?? (source.things.find(({ kind }) => kind === "object") ?? source.things[0]);
-  const change = (one: Thing, to: Partial<Pose>, step: boolean) => {
-    if (!readable) return setSaid("The text cannot be read now: put its mistakes right first.");
-    try {
-      const next = moved(text.text, one, inFile(one, source, to));
-      if (step) text.move(next);
-      else text.change(next);
-      setSaid("");
-    } catch (error) {
-      if (!(error instanceof CannotEdit)) throw error;
-      setSaid(error.message);
-    }
-  };
-  const go = (where: Extract<SceneAction, { go: string }>["go"]) => {
-    const next = neighbour(source.things, thing, where);
-    onSelect(keyOf(next));
-    view.current?.querySelector<SVGGElement>(`[data-thing="${keyOf(next)}"]`)?.focus();
-  };
-  const onKey = (event: KeyboardEvent, one: Thing) => {
-    const action = sceneActionOf(event, one.pose, one.kind === "robot");
+  // There is always a robot.
+  const thing = selectedOf(source.things, wanted) as Thing;
+  const onKey = (event: KeyboardEvent, at: Thing) => {
+    const action = sceneActionOf(event, at.pose, at.kind === "robot");
     if (action === null) return;
     event.preventDefault();
-    if ("go" in action) go(action.go);
-    else change(one, action.change, true);
+    if ("change" in action) return hands.nudge(at, action.change);
+    const next = keyOf(neighbour(source.things, thing, action.go));
+    setWanted(next);
+    view.current?.querySelector<SVGGElement>(`[data-thing="${next}"]`)?.focus();
   };
-  if (thing === undefined) return <p class="quiet">The scene has nothing in it yet.</p>;
   return (
     <>
-      <div class="tree-tools" role="group" aria-label="Change the scene">
-        <button type="button" class="tool" disabled={!text.canUndo} onClick={text.undo}>
-          Undo
-        </button>
-        <button type="button" class="tool" disabled={!text.canRedo} onClick={text.redo}>
-          Redo
-        </button>
-        {limits !== undefined && (
-          <label class="tool-group small">
-            Reach of the robots in
-            <select class="tool" value={limits.world} onChange={(event) => setWorld(event.currentTarget.value)}>
-              {knowing.map((each) => (
-                <option key={each.world} value={each.world}>
-                  {plain(each.world)}
-                </option>
-              ))}
-            </select>
-          </label>
-        )}
-      </div>
+      <SceneTools text={text} worlds={knowing} shown={limits} onWorld={setWorld} />
       <div ref={view}>
         <TopView
           source={source}
           selected={keyOf(thing)}
           reach={limits?.reach ?? []}
           problems={problems}
-          onSelect={onSelect}
-          onMove={(one, to) => change(one, to, false)}
+          onSelect={setWanted}
+          onMove={hands.put}
           onKey={onKey}
         />
       </div>
@@ -109,7 +72,7 @@ function SceneEditing({ editing, source, readable, selected, onSelect }: SceneEd
         Drag, or move with the arrow keys by 10 mm and turn with Q and E by 5°; with Shift by 1 mm and 1°. Page Up and Page Down go from one to the next.
       </p>
       <p class="edit-said small" role="status">
-        {said}
+        {hands.said}
       </p>
       <ThingForm
         key={keyOf(thing)}
@@ -117,27 +80,22 @@ function SceneEditing({ editing, source, readable, selected, onSelect }: SceneEd
         thing={thing}
         tableHeight={source.table.height}
         problems={problems.get(keyOf(thing)) ?? []}
-        onSelect={onSelect}
-        onMove={(to) => change(thing, to, false)}
+        onSelect={setWanted}
+        onMove={(to) => hands.put(thing, to)}
         onShow={() => toLine(source.text.slice(0, thing.span?.[0] ?? 0).split("\n").length)}
       />
     </>
   );
 }
 
-/** What the file is to say: of a grid, where its first one is then. */
-function inFile(thing: Thing, { things }: SceneSource, to: Partial<Pose>): Partial<Pose> {
-  const first = things.find((each) => each.kind === thing.kind && each.where?.join("/") === thing.where?.join("/")) ?? thing;
-  const change = { ...to };
-  if (to.x !== undefined) change.x = first.pose.x + to.x - thing.pose.x;
-  if (to.y !== undefined) change.y = first.pose.y + to.y - thing.pose.y;
-  if (to.yaw !== undefined) change.yaw = wrapped(to.yaw);
-  return change;
+/** What is wanted, or else a part. */
+function selectedOf(things: readonly Thing[], wanted: string): Thing | undefined {
+  return things.find((each) => keyOf(each) === wanted) ?? things.find(({ kind }) => kind === "object") ?? things[0];
 }
 
-function neighbour(things: readonly Thing[], thing: Thing | undefined, where: "next" | "previous" | "first" | "last"): Thing {
+function neighbour(things: readonly Thing[], thing: Thing, where: "next" | "previous" | "first" | "last"): Thing {
   const count = things.length;
-  const index = thing === undefined ? 0 : things.indexOf(thing);
+  const index = things.indexOf(thing);
   const to = { next: (index + 1) % count, previous: (index + count - 1) % count, first: 0, last: count - 1 }[where];
   return things[to] as Thing;
 }

@@ -62,7 +62,7 @@ export function readScene(text: string): SceneSource | null {
   const sizes = new Map(objects.map(({ name, size }) => [name, size]));
   const places = entriesOf(source, "place", said.places).map((place) => ({ ...place, size: sizes.get(place.name) ?? null }));
   const robots = entriesOf(source, "robot", said.robots);
-  const things = [...places, ...objects, ...(robots.length === 0 ? [ALONE] : robots)].slice(0, MOST_THINGS);
+  const things = [...[...places, ...objects].slice(0, MOST_THINGS), ...(robots.length === 0 ? [ALONE] : robots)];
   const elsewhere = isRecord(said.setting) && Object.keys(said.setting).length > 0;
   return { ...source, table: tableOf(said.table), things, elsewhere };
 }

@@ -3,7 +3,7 @@ import { isAlias, isMap, isSeq, type YAMLMap } from "yaml";
 import type { Owner } from "../../yaml_text/items";
 import { CannotEdit, endOf, pairOf, plainOf, readYaml, startOf, type YamlSource } from "../../yaml_text/source";
 import { isRecord } from "../../yaml_text/values";
-import { goalKindOf, isNode, pathOf, type PlainNode, stepsOf, withPaths } from "./plain_node";
+import { GOAL_KINDS, isNode, pathOf, type PlainNode, stepsOf, withPaths } from "./plain_node";
 
 /** Longer ones are drawn, but changed as text alone: each change reads all of it. */
 export const LONGEST_TEXT = 256 * 1024;
@@ -14,9 +14,22 @@ export interface TaskSource extends YamlSource {
   head: Readonly<Record<string, unknown>>;
 }
 
+/** An edit reads the text before and after it, which both are drawn, too. */
+const MOST_KEPT = 3;
+const kept = new Map<string, TaskSource | null>();
+
 /** Read a text; null where it has no tree in the nested form that can be made out. */
 export function readTask(text: string): TaskSource | null {
   if (text.length > LONGEST_TEXT) return null;
+  let source = kept.get(text);
+  if (source === undefined) source = readAnew(text);
+  kept.delete(text);
+  kept.set(text, source);
+  for (const oldest of kept.keys()) if (kept.size > MOST_KEPT) kept.delete(oldest);
+  return source;
+}
+
+function readAnew(text: string): TaskSource | null {
   const source = readYaml(text);
   if (source === null) return null;
   const { tree, ...head } = fieldsOf(source);
@@ -46,16 +59,16 @@ export function mapAt(source: TaskSource, path: string): YAMLMap {
 function childAt(node: unknown, index: number): unknown {
   if (isAlias(node)) throw new CannotEdit("A node above this one is an alias in the text: change it in the text.");
   if (!isMap(node)) return null;
-  const kind = goalKindOf(node.toJSON() as PlainNode);
-  const children = kind === null ? null : node.get(kind, true);
+  const kind = GOAL_KINDS.find((each) => node.has(each));
+  const children = kind === undefined ? null : node.get(kind, true);
   return isSeq(children) ? children.items[index] : null;
 }
 
 /** The list of children of the goal node at a path. */
 export function childrenAt(source: TaskSource, path: string): Owner {
   const map = mapAt(source, path);
-  const kind = goalKindOf(map.toJSON() as PlainNode);
-  const pair = kind === null ? null : pairOf(map, kind);
+  const kind = GOAL_KINDS.find((each) => map.has(each));
+  const pair = kind === undefined ? null : pairOf(map, kind);
   if (pair === null) throw new CannotEdit("Only a goal node has children.");
   return { map, pair };
 }

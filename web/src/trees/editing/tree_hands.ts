@@ -38,7 +38,11 @@ function selectedNode({ tree, selected }: Work): PlainNode {
   return nodeAt(tree, selected) as PlainNode;
 }
 
-export function add(work: Work, what: GoalKind | "leaf", where: Drop["where"]): void {
+const ALONE = "Nothing can stand beside the root: wrap it first.";
+
+/** `where` is undefined where there is no place for anything. */
+export function add(work: Work, what: GoalKind | "leaf", where: Drop["where"] | undefined): void {
+  if (where === undefined) return work.refuse(ALONE);
   const { tree, selected, scene, required } = work;
   const node = selectedNode(work);
   const leaf = newLeaf(tree, goalKindOf(node) === null ? node : null, scene, required);
@@ -121,7 +125,7 @@ function insertAfter(work: Work, node: PlainNode, said: string): void {
   const { tree, selected } = work;
   const steps = stepsOf(selected);
   const index = steps.pop();
-  if (index === undefined && goalKindOf(tree) === null) return work.refuse("Nothing can stand beside the root: wrap it first.");
+  if (index === undefined && goalKindOf(tree) === null) return work.refuse(ALONE);
   const place = index === undefined ? placeAt(tree, { path: "/", where: "inside" }) : { into: pathOf(steps), at: index + 1 };
   doIt(work, { do: "insert", ...place, node: withFreeNames(node, tree) }, said);
 }

@@ -1,6 +1,7 @@
 // The tree of the text beside it: drawn from the text, and changed in it.
 import { useMemo, useRef, useState } from "preact/hooks";
 import type { Editing } from "../../document/document_editor";
+import { useRead } from "../../document/use_read";
 import { TreeDrawing } from "../../tree/tree_drawing";
 import type { TreeNode } from "../../tree/tree_node";
 import { DefinitionDrawing } from "../definition_drawing";
@@ -12,14 +13,13 @@ import "./editing.css";
 const LABEL = "Drawing of this text";
 
 export function TreeSide({ editing }: { editing: Editing }) {
-  const { text } = editing.text;
-  const source = useMemo(() => readTask(text), [text]);
+  const { text, says: source } = useRead(editing.text, readTask);
   const nodes = useMemo(() => (source === null ? null : drawnNodes(source.tree)), [source]);
   const [selected, setSelected] = useState("/");
   const last = useRef<readonly TreeNode[] | null>(null);
   if (nodes !== null) last.current = nodes;
   if (source === null || nodes === null) return <AsItWas editing={editing} last={last.current} />;
-  return <TreeEditing editing={editing} source={source} nodes={nodes} selected={selected} onSelect={setSelected} />;
+  return <TreeEditing editing={editing} stale={text !== editing.text.text} source={source} nodes={nodes} selected={selected} onSelect={setSelected} />;
 }
 
 /** What can be drawn of a text that cannot be changed here: one with mistakes, or in another form. */
