@@ -267,6 +267,7 @@ async def scene_out_of_reach(_: Service, open_page: OpenPage) -> Page:
     await page.get_by_label("Forward x (m)").press("Enter")
     mistake = page.locator(".mistake-line").filter(has_text="does not reach (0.950")
     await expect(mistake.first).to_be_visible(timeout=PATIENCE_MS)
+    await page.evaluate("scrollTo(0, 0)")
     return page
 
 

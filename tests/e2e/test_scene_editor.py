@@ -42,7 +42,7 @@ async def test_a_part_is_moved_undone_and_kept_with_the_limits_in_sight(
     assert box is not None
     await page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     await page.mouse.down()
-    await page.mouse.move(box["x"] + box["width"] / 2, box["y"] - 200, steps=3)
+    await page.mouse.move(box["x"] + box["width"] / 2, box["y"] - 110, steps=3)
     await page.mouse.up()
     await expect(place).to_have_class("thing place doubtful selected", timeout=60_000)
     await expect(page.get_by_role("form").get_by_text("the arm does not reach")).to_be_visible()

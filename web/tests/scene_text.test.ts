@@ -135,9 +135,10 @@ describe("problems of a scene", () => {
 
 describe("the view from above", () => {
   it("has forward up and left left, and goes back to metres", () => {
-    const frame = viewFrame(sceneOf(BENCH), 700);
+    const frame = viewFrame(sceneOf(BENCH), 700, 500);
     expect(frame.top(0.5)).toBeLessThan(frame.top(0.2));
     expect(frame.left(0.5)).toBeLessThan(frame.left(-0.5));
+    expect([frame.width <= 700, frame.height <= 500.001]).toEqual([true, true]);
     const { x, y } = frame.at(frame.left(-0.3), frame.top(0.4));
     expect([x, y]).toEqual([expect.closeTo(0.4), expect.closeTo(-0.3)]);
   });

@@ -8,6 +8,9 @@ import { placed, screenColor, viewFrame, type ViewFrame } from "./view_frame";
 
 const LETTER_PX = 7;
 const BEGINS_PX = 3;
+/** So that the form below it is in sight, too. */
+const MOST_OF_WINDOW = 0.5;
+const SMALLEST_HEIGHT_PX = 280;
 /** A thing that is smaller can still be grabbed. */
 const SMALLEST_PX = 24;
 
@@ -31,7 +34,7 @@ interface Drag {
 export function TopView({ source, selected, reach, problems, onSelect, onMove, onKey }: TopViewProps) {
   const box = useRef<HTMLDivElement>(null);
   const width = useWidth(box);
-  const frame = viewFrame(source, width);
+  const frame = viewFrame(source, width, Math.max(SMALLEST_HEIGHT_PX, innerHeight * MOST_OF_WINDOW));
   const [drag, setDrag] = useState<Drag | null>(null);
   const { table } = source;
   const grab = (event: PointerEvent, thing: Thing) => {

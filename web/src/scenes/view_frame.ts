@@ -15,7 +15,8 @@ export interface ViewFrame {
 const AROUND_M = 0.12;
 const ROBOT_M = 0.3;
 
-export function viewFrame({ table, things }: SceneSource, width: number): ViewFrame {
+/** As large as the room allows, in pixels. */
+export function viewFrame({ table, things }: SceneSource, mostWidth: number, mostHeight: number): ViewFrame {
   const [x, y] = [[...edges(table.center[0], table.size[0])], [...edges(table.center[1], table.size[1])]];
   for (const thing of things) {
     const half = thing.kind === "robot" ? ROBOT_M : Math.hypot(thing.size?.[0] ?? 0.1, thing.size?.[1] ?? 0.1) / 2;
@@ -24,10 +25,10 @@ export function viewFrame({ table, things }: SceneSource, width: number): ViewFr
   }
   const [farthest, nearest] = [Math.max(...x) + AROUND_M, Math.min(...x) - AROUND_M];
   const [leftmost, rightmost] = [Math.max(...y) + AROUND_M, Math.min(...y) - AROUND_M];
-  const scale = width / (leftmost - rightmost);
+  const scale = Math.min(mostWidth / (leftmost - rightmost), mostHeight / (farthest - nearest));
   return {
     scale,
-    width,
+    width: (leftmost - rightmost) * scale,
     height: (farthest - nearest) * scale,
     left: (at) => (leftmost - at) * scale,
     top: (at) => (farthest - at) * scale,
