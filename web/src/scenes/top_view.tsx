@@ -7,6 +7,7 @@ import type { Pose, SceneSource, Thing } from "./scene_source";
 import { placed, screenColor, viewFrame, type ViewFrame } from "./view_frame";
 
 const LETTER_PX = 7;
+const LINE_PX = 16;
 const BEGINS_PX = 3;
 /** So that the form below it is in sight, too. */
 const MOST_OF_WINDOW = 0.5;
@@ -136,7 +137,7 @@ function ThingDrawing({ thing, frame, selected, problems, onGrab, onKey, onFocus
         )}
         {kind === "place" && <path class="middle" d="M-4 0H4M0 -4V4" />}
       </g>
-      <ThingName thing={thing} frame={frame} room={Math.max(wide, high)} always={selected} />
+      <ThingName thing={thing} frame={frame} wide={wide} high={high} always={selected} />
       {wrong !== "" && (
         <g class="thing-sign" aria-hidden="true" transform={`translate(${frame.left(pose.y) + wide / 2} ${frame.top(pose.x) - high / 2})`}>
           <circle r={8} />
@@ -148,18 +149,25 @@ function ThingDrawing({ thing, frame, selected, problems, onGrab, onKey, onFocus
 }
 
 /** The name where it has room; of what is selected always. */
-function ThingName({ thing, frame, room, always }: { thing: Thing; frame: ViewFrame; room: number; always: boolean }) {
+function ThingName(props: { thing: Thing; frame: ViewFrame; wide: number; high: number; always: boolean }) {
+  const { thing, frame, wide, high, always } = props;
   const { kind, pose } = thing;
-  const letters = kind === "robot" ? 14 : Math.floor(room / LETTER_PX);
+  const across = Math.abs(Math.sin(pose.yaw)) > Math.SQRT1_2;
+  const letters = kind === "robot" ? 14 : Math.floor((across ? high : wide) / LETTER_PX);
   const name = always ? plain(thing.name) : kind === "place" ? "" : shortened(plain(thing.name), letters);
   if (name === "") return null;
   const half = (name.length * LETTER_PX) / 2;
   const middle = Math.min(Math.max(frame.left(pose.y), half), frame.width - half);
   return (
-    <text class="thing-name" x={middle} y={frame.top(pose.x) + (kind === "robot" ? 32 : 4)} aria-hidden="true">
+    <text class="thing-name" x={middle} y={frame.top(pose.x) + (kind === "robot" ? 32 : below(across ? wide : high))} aria-hidden="true">
       {name}
     </text>
   );
+}
+
+/** In the middle of what is high enough, else under it. */
+function below(high: number): number {
+  return high < LINE_PX ? high / 2 + LINE_PX - 4 : 4;
 }
 
 const KINDS: Readonly<Record<Thing["kind"], string>> = { object: "part", place: "place", robot: "robot" };
