@@ -87,6 +87,7 @@ SHOTS: dict[str, Shot] = {
     "trees": Shot(situations.trees),
     "editor": Shot(situations.wrong_tree),
     "editor_dark": Shot(situations.wrong_tree, theme="dark"),
+    "scene_editor": Shot(situations.scene_out_of_reach),
     "start_run": Shot(fresh_start),
     "fleet": Shot(situations.fleet),
     "settings": Shot(situations.settings),

@@ -12,6 +12,7 @@ from fastapi import FastAPI
 from mend.server.access.access import Access
 from mend.server.access.deed_log import DeedLog
 from mend.server.access.known_principals import KnownPrincipals
+from mend.server.api import behaviors as behaviors_api
 from mend.server.api import (
     console,
     dialogues,
@@ -70,6 +71,7 @@ ROUTES = (
     session,
     principals_api,
     documents,
+    behaviors_api,
     worlds_api,
     sites_api,
     requests_api,

@@ -11,6 +11,7 @@ from mend.server.documents import (
     DocumentKind,
     DocumentMistake,
     FixedDocuments,
+    RobotReach,
     Uploaded,
     WorldFit,
     WrongDocumentError,
@@ -97,6 +98,7 @@ class _Checker:
                     for each in fits
                     for mistake in each.problems
                 ],
+                fits,
             )
         return fits
 
@@ -156,6 +158,10 @@ class SceneFileChecker(_Checker):
                 problems=[
                     _mistake(Problem(read.line_of(each.where), None, each.message), lines)
                     for each in problems
+                ],
+                reach=[
+                    RobotReach(robot=robot, x=x, y=y, min_m=reach.min_m, max_m=reach.max_m)
+                    for robot, (reach, x, y) in self._worlds.reaches(world, read.scene).items()
                 ],
             )
             for world, problems in self._worlds.try_scene(read.scene).items()

@@ -72,11 +72,27 @@ class DocumentMistake(View):
     message: str
 
 
+class RobotReach(View):
+    """How far a robot of a scene reaches: between two distances in metres from a point of the
+    scene's plane. `robot` is what the scene calls it.
+    """
+
+    robot: str
+    x: float
+    y: float
+    min_m: float
+    max_m: float
+
+
 class WorldFit(View):
-    """What keeps the robot of one world from doing what a document says; nothing if it can."""
+    """What keeps the robot of one world from doing what a document says; nothing if it can.
+
+    `reach` is told of a scene, where the world knows it.
+    """
 
     world: str
     problems: list[DocumentMistake]
+    reach: list[RobotReach] = []
 
 
 class KeptDocument(DocumentView):
@@ -86,7 +102,10 @@ class KeptDocument(DocumentView):
 
 
 class DocumentCheck(View):
-    """What a document is worth: its `definition` in JSON form, or what is wrong with it."""
+    """What a document is worth: its `definition` in JSON form, or what is wrong with it.
+
+    `worlds` are those that were asked; where none of them can do it, their problems are the errors.
+    """
 
     name: str | None
     definition: dict[str, Any] | None
@@ -99,9 +118,17 @@ MOST_MISTAKES = 1000
 
 
 class WrongDocumentError(WrongInputError):
-    """A document has mistakes; after the first 1000 only how many more there are is told."""
+    """A document has mistakes; after the first 1000 only how many more there are is told.
 
-    def __init__(self, what: str, mistakes: Sequence[DocumentMistake]) -> None:
+    `worlds`: how they can do it, where they were asked.
+    """
+
+    def __init__(
+        self,
+        what: str,
+        mistakes: Sequence[DocumentMistake],
+        worlds: Sequence[WorldFit] = (),
+    ) -> None:
         count = "a mistake" if len(mistakes) == 1 else f"{len(mistakes)} mistakes"
         told = list(mistakes[:MOST_MISTAKES])
         if len(mistakes) > MOST_MISTAKES:
@@ -109,6 +136,7 @@ class WrongDocumentError(WrongInputError):
             told.append(DocumentMistake(line=None, column=None, node=None, message=more))
         super().__init__(f"the {what} file has {count}", [_sentence(each) for each in told])
         self.mistakes = told
+        self.worlds = worlds
 
     def __reduce__(self) -> tuple[Any, ...]:
         # It goes from one process to another; it is made of other things than it says.

@@ -76,7 +76,9 @@ class _Reading:
             checked = self.checker.try_in_worlds(text, uploaded)
         except WrongDocumentError as error:
             return Rendered.of(
-                DocumentCheck(name=name, definition=None, errors=error.mistakes, worlds=[])
+                DocumentCheck(
+                    name=name, definition=None, errors=error.mistakes, worlds=list(error.worlds)
+                )
             )
         return Rendered.of(
             DocumentCheck(

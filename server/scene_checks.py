@@ -3,8 +3,16 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from mend.errors import WrongInputError
-from mend.sim.world import ParticularWorld, SceneChecker, WorldAdapter, WorldUnavailableError
+from mend.robots.arm.body import Reach
+from mend.sim.world import (
+    KnownReach,
+    ParticularWorld,
+    SceneChecker,
+    WorldAdapter,
+    WorldUnavailableError,
+)
 from mend.tasks.definition import BehaviorNode, GoalNode, TaskTreeDefinition
+from mend.tasks.frames import frames_of
 from mend.tasks.plugins import load_plugins
 from mend.tasks.scene import Scene
 from mend.tasks.scene_problem import SceneProblem
@@ -51,6 +59,19 @@ class WorldChecks:
     def try_scene(self, scene: Scene) -> dict[str, list[SceneProblem]]:
         """What each world's robot cannot do with the objects of a scene by themselves."""
         return {name: check(scene, []) for name, check in self._checks(scene)}
+
+    def reaches(self, world: str, scene: Scene) -> dict[str, tuple[Reach, float, float]]:
+        """How far each robot of a scene reaches in a world, and from which point of the scene's
+        plane; nothing where the world does not know.
+        """
+        adapter = self._adapters[world]
+        if not isinstance(adapter, KnownReach):
+            return {}
+        reach = adapter.reach(scene)
+        return {
+            name: (reach, *frame.to_scene(*reach.origin))
+            for name, frame in frames_of(scene).items()
+        }
 
     def try_tree(self, scene: Scene, tree: TaskTreeDefinition) -> dict[str, list[SceneProblem]]:
         """What keeps each world's robot from doing a tree in a scene."""

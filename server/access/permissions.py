@@ -53,6 +53,7 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     *_documents("tree"),
     *_documents("scene"),
     *_documents("scenario"),
+    Endpoint("list_behaviors", "GET", "/api/behaviors", Role.VIEWER),
     Endpoint("list_worlds", "GET", "/api/worlds", Role.VIEWER),
     Endpoint("list_sites", "GET", "/api/sites", Role.VIEWER),
     Endpoint("get_site", "GET", _SITE, Role.VIEWER),

@@ -254,6 +254,23 @@ async def wrong_tree(_: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def scenes(_: Service, open_page: OpenPage) -> Page:
+    page = await open_page("/scenes")
+    await expect(page.get_by_role("link", name="Copy and edit eket")).to_be_visible()
+    return page
+
+
+async def scene_out_of_reach(_: Service, open_page: OpenPage) -> Page:
+    """A part was moved where no robot reaches it."""
+    page = await open_page("/edit_scene/eket")
+    await page.get_by_label("Forward x (m)").fill("0.95")
+    await page.get_by_label("Forward x (m)").press("Enter")
+    mistake = page.locator(".mistake-line").filter(has_text="does not reach (0.950")
+    await expect(mistake.first).to_be_visible(timeout=PATIENCE_MS)
+    await page.evaluate("scrollTo(0, 0)")
+    return page
+
+
 async def delete_tree(service: Service, open_page: OpenPage) -> Page:
     await service.library.trees.save(
         "shelf", "name: shelf\ntree: {behavior: pick_and_place, object: a, place: b}\n"
@@ -405,6 +422,8 @@ SITUATIONS: dict[str, Situation] = {
         plotted_run,
         trees,
         wrong_tree,
+        scenes,
+        scene_out_of_reach,
         delete_tree,
         start_run,
         requests,

@@ -10,6 +10,7 @@ from noon import at_noon
 from service_under_test import build
 
 from mend.errors import ConflictError
+from mend.robots.arm.body import Reach
 from mend.server.documents import MOST_MISTAKES, DocumentKind
 from mend.server.fixed_documents import GivenFiles, fixed_documents
 from mend.server.journal.journal import Document, Entry
@@ -20,6 +21,7 @@ from mend.server.off_loop import MUCH_CHARS
 from mend.server.runtime.requests import RunRequest
 from mend.server.scene_checks import WorldChecks
 from mend.tasks.library import SCENES
+from mend.tasks.scene import Scene
 from mend.tasks.scene_problem import SceneProblem
 
 SCENE = """\
@@ -69,6 +71,9 @@ class BoldWorld(TimidWorld):
     def check_scene(self, scene, leaves) -> list[SceneProblem]:  # noqa: ARG002
         return []
 
+    def reach(self, scene: Scene) -> Reach:  # noqa: ARG002
+        return Reach((0.1, 0.2), 0.3, 0.8)
+
 
 class IdleWorld:
     """One that checks nothing."""
@@ -111,7 +116,11 @@ async def worldless() -> AsyncIterator[httpx.AsyncClient]:
 
 
 def names(response: httpx.Response) -> list[str]:
-    return [each["name"] for each in response.json()]
+    return names_of(response.json())
+
+
+def names_of(listed: list[dict[str, str]]) -> list[str]:
+    return [each["name"] for each in listed]
 
 
 async def keep_all(client: httpx.AsyncClient) -> None:
@@ -249,6 +258,33 @@ async def test_a_scenario_for_what_is_not_there_is_refused(client: httpx.AsyncCl
     refused = await client.post("/api/scenarios", content=late, headers=YAML)
     assert refused.status_code == 422
     assert "names step 12 for 'cup'" in refused.json()["errors"][0]
+
+
+async def test_a_scene_is_told_how_far_its_robots_reach(client: httpx.AsyncClient) -> None:
+    robots = "robots:\n  near: {x: 0.0, y: 0.0}\n  far: {x: 1.0, y: 0.5, yaw: 3.14159}\n"
+    checked = (await client.post("/api/scenes/check", json={"text": SCENE + robots})).json()
+    reach = {each["world"]: each["reach"] for each in checked["worlds"]}
+    assert reach["timid"] == []
+    near, far = reach["bold"]
+    assert near == {"robot": "near", "x": 0.1, "y": 0.2, "min_m": 0.3, "max_m": 0.8}
+    assert (far["robot"], far["x"], far["y"]) == ("far", pytest.approx(0.9), pytest.approx(0.3))
+
+
+async def test_what_no_world_can_do_is_a_mistake_and_the_worlds_are_told() -> None:
+    async with client_of(library(timid=TimidWorld())) as client:
+        checked = (await client.post("/api/scenes/check", json={"text": SCENE})).json()
+    (mistake,) = checked["errors"]
+    (fit,) = checked["worlds"]
+    assert mistake["message"] == "in the world 'timid': 'cup' is too high"
+    assert (fit["world"], fit["problems"][0]["message"]) == ("timid", "'cup' is too high")
+
+
+async def test_behaviors_are_listed_with_their_parameters(client: httpx.AsyncClient) -> None:
+    listed = (await client.get("/api/behaviors")).json()
+    assert names_of(listed) == sorted(names_of(listed))
+    (place,) = [each["parameters"] for each in listed if each["name"] == "pick_and_place"]
+    assert place["required"] == ["object", "place"]
+    assert place["properties"]["needs_help"]["default"] is False
 
 
 async def test_what_only_some_worlds_can_do_is_kept_and_said(client: httpx.AsyncClient) -> None:

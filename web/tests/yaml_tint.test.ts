@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { type Ink, tint } from "../src/trees/yaml_tint";
+import { type Ink, tint } from "../src/document/yaml_tint";
 
 function inks(line: string): [Ink, string][] {
   return tint(line)

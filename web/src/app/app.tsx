@@ -20,6 +20,8 @@ const IssuesView = later(() => import("../issues/issues_view").then((module) => 
 const StatisticsView = later(() => import("../statistics/statistics_view").then((module) => module.StatisticsView));
 const TreesView = later(() => import("../trees/trees_view").then((module) => module.TreesView));
 const TreeEditor = later(() => import("../trees/tree_editor").then((module) => module.TreeEditor));
+const ScenesView = later(() => import("../scenes/scenes_view").then((module) => module.ScenesView));
+const SceneEditor = later(() => import("../scenes/scene_editor").then((module) => module.SceneEditor));
 const StartRun = later(() => import("../run/start/start_run").then((module) => module.StartRun));
 const RequestsView = later(() => import("../requests/requests_view").then((module) => module.RequestsView));
 const FleetPage = later(() => import("../fleet/fleet_page").then((module) => module.FleetPage));
@@ -80,6 +82,10 @@ function View({ shown }: { shown: Exclude<Route, { view: "touch" }> }) {
       return <TreesView tree={shown.tree} />;
     case "edit":
       return <TreeEditor key={shown.tree} tree={shown.tree} />;
+    case "scenes":
+      return <ScenesView />;
+    case "edit_scene":
+      return <SceneEditor key={shown.scene} scene={shown.scene} />;
     case "start":
       return <StartRun key={shown.tree} tree={shown.tree} />;
     case "requests":

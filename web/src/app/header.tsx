@@ -21,6 +21,9 @@ export function Connection() {
   );
 }
 
+/** Task trees, and the scenes that they are for. */
+const TREE_VIEWS: ReadonlySet<string> = new Set(["trees", "tree", "edit", "scenes", "edit_scene"]);
+
 export function Header() {
   const view = route.value.view;
   const count = questions.value.length;
@@ -41,7 +44,7 @@ export function Header() {
         <Place href="/issues" current={view === "issues" || view === "statistics"}>
           Issues
         </Place>
-        <Place href="/trees" current={view === "trees" || view === "tree" || view === "edit"}>
+        <Place href="/trees" current={TREE_VIEWS.has(view)}>
           Task trees
         </Place>
         {(view === "requests" || view === "fleet" || (fleets.value?.length ?? 0) > 0) && (

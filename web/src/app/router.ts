@@ -10,6 +10,8 @@ export type Route =
   | { view: "trees" }
   | { view: "tree"; tree: string }
   | { view: "edit"; tree: string | null }
+  | { view: "scenes" }
+  | { view: "edit_scene"; scene: string | null }
   | { view: "start"; tree: string | null }
   | { view: "requests" }
   | { view: "touch"; robot: string }
@@ -17,9 +19,9 @@ export type Route =
   | { view: "settings" }
   | { view: "unknown"; path: string };
 
-type Page = "runs" | "issues" | "statistics" | "trees" | "requests" | "settings";
+type Page = "runs" | "issues" | "statistics" | "trees" | "scenes" | "requests" | "settings";
 
-const PAGES: ReadonlySet<Page> = new Set<Page>(["runs", "issues", "statistics", "trees", "requests", "settings"]);
+const PAGES: ReadonlySet<Page> = new Set<Page>(["runs", "issues", "statistics", "trees", "scenes", "requests", "settings"]);
 
 const path = signal(location.pathname);
 
@@ -34,9 +36,11 @@ export function routeOf(address: string): Route {
     if (PAGES.has(first as Page)) return { view: first as Page };
     if (first === "fleet") return { view: first, site: null };
     if (first === "edit" || first === "start") return { view: first, tree: null };
+    if (first === "edit_scene") return { view: first, scene: null };
   } else if (first === "runs") return { view: "run", run: second };
   else if (first === "trees") return { view: "tree", tree: second };
   else if (first === "fleet") return { view: first, site: second };
+  else if (first === "edit_scene") return { view: first, scene: second };
   else if (first === "edit" || first === "start") return { view: first, tree: second };
   return { view: "unknown", path: address };
 }

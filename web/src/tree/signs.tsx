@@ -62,3 +62,13 @@ export function StateSign({ state, x, y }: { state: NodeState; x: number; y: num
     </g>
   );
 }
+
+/** A mark on the upper edge of a card that has a mistake, around `x`. */
+export function WrongSign({ x }: { x: number }) {
+  return (
+    <g class="wrong-sign" aria-hidden="true" transform={`translate(${x - 6} 2)`}>
+      <circle r={9} />
+      <path d="M0 -4.5v5M0 3.5v.6" />
+    </g>
+  );
+}

@@ -1,11 +1,13 @@
 // A task tree as a drawing that can be walked with the arrow keys, zoomed, and folded when large.
+import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import { Edges } from "./edges";
 import { COMPACT, collapsedAtFirst, FULL, growTree, layoutTree, type PlacedNode, type TreeLayout } from "./layout";
 import { NodeCard } from "./node_card";
 import { pathsAbove, type TreeNode } from "./tree_node";
+import { WrongSign } from "./signs";
 import { inSight, useIntoSight, useSight } from "./sight";
-import { useWalk } from "./walk";
+import { type GoTo, useWalk } from "./walk";
 import { described } from "./words";
 import "./tree.css";
 
@@ -14,6 +16,8 @@ const SHOWN_AT_FIRST_COMPACT = 14;
 const ZOOM_STEP = 1.25;
 const MIN_ZOOM = 0.3;
 const MAX_ZOOM = 2.5;
+
+const NO_PROBLEMS: ReadonlyMap<string, string> = new Map();
 
 export interface TreeDrawingProps {
   /** Depth first, the root first. */
@@ -25,12 +29,23 @@ export interface TreeDrawingProps {
   /** The path of the node that matters now: it is unfolded and brought into sight. */
   focus?: string | null;
   onSelect?: (path: string) => void;
+  /** Whether a node is selected as soon as the keys come to it. */
+  selectsOnFocus?: boolean;
+  /** Where the keys are to go on; a new object goes there again. */
+  goTo?: GoTo | null;
+  /** What is wrong with nodes, by path. */
+  problems?: ReadonlyMap<string, string>;
+  /** Hears keys at a node first; those that it prevents do nothing else. */
+  onKey?: (event: KeyboardEvent, path: string) => void;
+  /** What is drawn over the tree, in its coordinates. */
+  over?: (layout: TreeLayout) => ComponentChildren;
   /** Small cards without figures, for a corner of something else. */
   compact?: boolean;
 }
 
 export function TreeDrawing(props: TreeDrawingProps) {
   const { nodes, label = "Task tree", selected = null, focus = null, onSelect, compact = false } = props;
+  const { selectsOnFocus = false, goTo = null, problems = NO_PROBLEMS, onKey, over } = props;
   const scroll = useRef<HTMLDivElement>(null);
   const size = useSize(scroll);
   const shape = useShape(nodes);
@@ -46,7 +61,16 @@ export function TreeDrawing(props: TreeDrawingProps) {
   const sight = useSight(scroll, scale);
   useIntoSight(scroll, layout, focus, scale);
   const toggle = (path: string) => setCollapsed(toggled(collapsed, path));
-  const walk = useWalk(layout, selected ?? focus, toggle, onSelect);
+  const walk = useWalk(layout, selected ?? focus, toggle, onSelect, goTo);
+  const onKeyDown = (event: KeyboardEvent) => {
+    const path = pathOf(event.target);
+    if (path !== null) onKey?.(event, path);
+    if (!event.defaultPrevented) walk.onKeyDown(event);
+  };
+  const onFocusIn = (event: FocusEvent) => {
+    const path = pathOf(event.target);
+    if (selectsOnFocus && path !== null && path !== selected) onSelect?.(path);
+  };
   const highest = useMemo(() => nodes.reduce((most, node) => Math.max(most, node.potential ?? 0), 0), [nodes]);
   const drawn = inSight(layout, sight, walk.at);
   const foldable = nodes.length > 24 || collapsed.size > 0;
@@ -60,7 +84,8 @@ export function TreeDrawing(props: TreeDrawingProps) {
           width={layout.width * scale}
           height={layout.height * scale}
           viewBox={`0 0 ${layout.width} ${layout.height}`}
-          onKeyDown={walk.onKeyDown}
+          onKeyDown={onKeyDown}
+          onFocusIn={onFocusIn}
         >
           <Edges edges={drawn.edges} direction={layout.direction} />
           {drawn.nodes.map((placed) => (
@@ -74,25 +99,31 @@ export function TreeDrawing(props: TreeDrawingProps) {
               aria-selected={placed.node.path === selected}
               aria-expanded={placed.expandable ? placed.hidden === 0 : undefined}
               tabindex={placed.node.path === walk.at ? 0 : -1}
-              class={`node ${placed.node.kind} ${placed.node.state ?? "defined"}`}
+              class={`node ${placed.node.kind} ${placed.node.state ?? "defined"} ${problems.has(placed.node.path) ? "wrong" : ""}`}
               data-path={placed.node.path}
               data-state={placed.node.state ?? undefined}
               transform={`translate(${placed.x} ${placed.y})`}
               onClick={() => walk.take(placed.node.path)}
             >
               {/* The name, in words; one of its own beside the visible text would contradict that. */}
-              <title>{described(placed.node, placed.hidden, placed.leftOut)}</title>
+              <title>{described(placed.node, placed.hidden, placed.leftOut, problems.get(placed.node.path))}</title>
               <NodeCard placed={placed} highest={highest} compact={compact} />
+              {problems.has(placed.node.path) && <WrongSign x={placed.width - (placed.node.kind === "behavior" ? 4 : 18)} />}
               {placed.leftOut > 0 && <LeftOut placed={placed} />}
               {placed.expandable && (foldable || placed.hidden > 0) && (
                 <FoldButton placed={placed} layout={layout} onToggle={() => toggle(placed.node.path)} />
               )}
             </g>
           ))}
+          {over?.(layout)}
         </svg>
       </div>
     </div>
   );
+}
+
+function pathOf(target: EventTarget | null): string | null {
+  return target instanceof Element ? target.getAttribute("data-path") : null;
 }
 
 function ZoomButtons({ zoom, setZoom }: { zoom: number; setZoom: (zoom: number) => void }) {

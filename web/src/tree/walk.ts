@@ -3,12 +3,18 @@ import { useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { TreeLayout } from "./layout";
 import { parentOf } from "./tree_node";
 
+/** A node to go to. */
+export interface GoTo {
+  path: string;
+}
+
 /** One node can be reached with Tab; the arrow keys go on from it as in any tree. */
 export function useWalk(
   layout: TreeLayout,
   initial: string | null,
   toggle: (path: string) => void,
   onSelect: ((path: string) => void) | undefined,
+  goTo: GoTo | null = null,
 ) {
   const [walked, setWalked] = useState<string | null>(null);
   const elements = useRef(new Map<string, SVGGElement>());
@@ -20,6 +26,11 @@ export function useWalk(
     goingTo.current = null;
     elements.current.get(at)?.focus();
   }, [at]);
+  useLayoutEffect(() => {
+    if (goTo === null) return;
+    setWalked(goTo.path);
+    elements.current.get(goTo.path)?.focus();
+  }, [goTo]);
   const go = (path: string | undefined | null) => {
     if (path === undefined || path === null) return;
     goingTo.current = path;

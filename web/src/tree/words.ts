@@ -56,7 +56,7 @@ export function shortened(text: string, characters: number): string {
 }
 
 /** Everything about a node in one sentence, for those who hear the drawing. */
-export function described(node: TreeNode, hidden: number, leftOut: number): string {
+export function described(node: TreeNode, hidden: number, leftOut: number, problem?: string): string {
   const parts = [plain(node.name), KIND_MEANINGS[node.kind]];
   if (node.behavior !== null) parts[1] = plain(node.behavior);
   if (node.state !== null) parts.push(STATE_WORDS[node.state]);
@@ -66,5 +66,6 @@ export function described(node: TreeNode, hidden: number, leftOut: number): stri
   if (node.attempts > 0) parts.push(`${node.attempts} failed`);
   if (hidden > 0) parts.push(`${hidden} nodes under it are folded away`);
   if (leftOut > 0) parts.push(`${leftOut} of its children are not drawn`);
-  return parts.join(", ");
+  const told = parts.join(", ");
+  return problem === undefined ? told : `${told}. Mistake: ${problem}`;
 }

@@ -7,7 +7,7 @@ import { connection } from "../state/service";
 import * as rest from "../wire/rest";
 import type { DocumentView } from "../wire/types";
 import { DefinitionDrawing } from "./definition_drawing";
-import { dropDraft } from "./draft";
+import { dropDraft } from "../document/draft";
 
 export function TreeDetails({ tree }: { tree: string }) {
   const [found, setFound] = useState<DocumentView | null>(null);
@@ -27,7 +27,12 @@ export function TreeDetails({ tree }: { tree: string }) {
       {description !== null && <p>{description}</p>}
       <p class="small quiet">
         {nodes === 1 ? "1 node" : `${nodes} nodes`}
-        {scene !== null && <> · scene {scene}</>}
+        {scene !== null && (
+          <>
+            {" · scene "}
+            {may("operator") ? <a href={`/edit_scene/${scene}`}>{scene}</a> : scene}
+          </>
+        )}
         {found.built_in && <> · built in: copy it to change it</>}
       </p>
       <div class="tree-frame">

@@ -26,14 +26,19 @@ export function TreesView({ tree }: { tree: string | null }) {
       <section class="page">
         <div class="page-head">
           <h1>Task trees</h1>
-          {may("operator") && (
-            <div class="page-actions">
-              <FileButton onFile={take} />
-              <a class="button" href="/edit">
-                Write a new one
-              </a>
-            </div>
-          )}
+          <div class="page-actions">
+            <a class="button" href="/scenes">
+              Scenes
+            </a>
+            {may("operator") && (
+              <>
+                <FileButton onFile={take} />
+                <a class="button" href="/edit">
+                  Write a new one
+                </a>
+              </>
+            )}
+          </div>
         </div>
         <p class="mistake" role="alert">
           {mistake}

@@ -2,7 +2,7 @@
 import { go } from "../app/router";
 import * as rest from "../wire/rest";
 import type { DocumentSummary } from "../wire/types";
-import { keepDraft } from "./draft";
+import { keepDraft } from "../document/draft";
 import { freeName, nameIn, nameOfFile, renamed } from "./tree_text";
 
 const LARGEST_BYTES = 8 * 1024 * 1024;

@@ -2,6 +2,7 @@
 import type {
   Answered,
   AskedRobotView,
+  BehaviorView,
   ChosenView,
   Detection,
   DialogueView,
@@ -22,6 +23,7 @@ import type {
   RunSummary,
   RunView,
   ScenarioSummary,
+  SceneSummary,
   SessionView,
   SiteView,
   SpeechView,
@@ -246,6 +248,12 @@ export const saveTree = (text: string, name?: string) =>
 /** Check a task file without keeping it. */
 export const checkTree = (text: string, signal: AbortSignal) =>
   call<DocumentCheck>("POST", "/api/trees/check", { text }, { signal });
+export const scenes = () => call<SceneSummary[]>("GET", "/api/scenes");
+export const saveScene = (text: string, name: string) => call<DocumentView>("POST", "/api/scenes", { name, text });
+/** Check a scene file without keeping it. */
+export const checkScene = (text: string, signal: AbortSignal) =>
+  call<DocumentCheck>("POST", "/api/scenes/check", { text }, { signal });
+export const behaviors = () => call<BehaviorView[]>("GET", "/api/behaviors");
 export const deleteTree = (name: string) => call<void>("DELETE", `/api/trees/${segment(name)}`);
 
 export const exportPath = (run: string, format: "csv" | "mcap") => `/api/runs/${segment(run)}/export?format=${format}`;

@@ -33,8 +33,8 @@ export function Mistakes({ id, checked, onLine }: MistakesProps) {
   );
 }
 
-function verdictKind({ check, failure }: Checked): "waiting" | "good" | "wrong" {
-  if (failure !== "" || check === null) return "waiting";
+function verdictKind({ check, failure }: Checked): "unknown" | "good" | "wrong" {
+  if (failure !== "" || check === null) return "unknown";
   return check.errors.length === 0 ? "good" : "wrong";
 }
 

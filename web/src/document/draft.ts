@@ -1,4 +1,4 @@
-// Texts of task trees that are not saved yet: kept on this device until they are, so that neither a
+// Texts of task trees and scenes that are not saved yet: kept on this device until they are, so that neither a
 // mistake nor a closed page, an ended session or a lost connection takes one.
 
 export interface Draft {
@@ -10,7 +10,7 @@ export interface Draft {
 
 const inMemory = new Map<string, Draft>();
 
-/** The draft of a tree (null: of a new one), if there is one. */
+/** The draft of a tree (null: of a new one), if there is one; of a scene with `scene:` before its name. */
 export function keptDraft(tree: string | null): Draft | null {
   const key = keyOf(tree);
   const held = inMemory.get(key);

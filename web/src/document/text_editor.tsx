@@ -16,6 +16,11 @@ export interface Jump {
   line: number;
 }
 
+/** A place between two characters of the text. */
+export interface Caret {
+  offset: number;
+}
+
 interface TextEditorProps {
   id: string;
   label: string;
@@ -25,9 +30,14 @@ interface TextEditorProps {
   wrong: ReadonlySet<number>;
   describedBy: string;
   jump: Jump | null;
+  /** Where to go on writing after something was undone; a new object goes there again. */
+  caret: Caret | null;
+  onUndo: () => void;
+  onRedo: () => void;
 }
 
-export function TextEditor({ id, label, text, onText, wrong, describedBy, jump }: TextEditorProps) {
+export function TextEditor(props: TextEditorProps) {
+  const { id, label, text, onText, wrong, describedBy, jump, caret } = props;
   const frame = useRef<HTMLDivElement>(null);
   const area = useRef<HTMLTextAreaElement>(null);
   const lines = useMemo(() => text.split("\n"), [text]);
@@ -35,6 +45,7 @@ export function TextEditor({ id, label, text, onText, wrong, describedBy, jump }
   const height = lines.length * LINE_PX;
   useFit(area, text, height);
   useJump(frame, area, lines, jump);
+  useCaret(area, caret);
   const shown = lines.slice(first, last);
   return (
     <div class="text-editor" ref={frame}>
@@ -65,6 +76,7 @@ export function TextEditor({ id, label, text, onText, wrong, describedBy, jump }
           autocapitalize="off"
           autocomplete="off"
           onInput={(event) => onText(event.currentTarget.value)}
+          onBeforeInput={(event) => undoneByBrowser(event, props)}
           onKeyDown={keepIndentation}
         />
       </div>
@@ -134,6 +146,22 @@ function useJump(
   }, [jump]);
 }
 
+/** After something was undone with the keys: the browser would go to the end of the text. */
+function useCaret(area: RefObject<HTMLTextAreaElement | null>, caret: Caret | null): void {
+  useLayoutEffect(() => {
+    const element = area.current as HTMLTextAreaElement;
+    if (caret !== null && document.activeElement === element) element.setSelectionRange(caret.offset, caret.offset);
+  }, [caret]);
+}
+
+/** The browser's own undo, as of a menu, knows nothing of what was done in the drawing. */
+function undoneByBrowser(event: InputEvent, { onUndo, onRedo }: Pick<TextEditorProps, "onUndo" | "onRedo">): void {
+  if (event.inputType !== "historyUndo" && event.inputType !== "historyRedo") return;
+  event.preventDefault();
+  if (event.inputType === "historyUndo") onUndo();
+  else onRedo();
+}
+
 /** Begin a new line where the last one began. Tab is left alone: it leaves the text. */
 function keepIndentation(event: KeyboardEvent): void {
   if (event.key !== "Enter" || event.isComposing || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -142,6 +170,6 @@ function keepIndentation(event: KeyboardEvent): void {
   const indentation = (LEADING_SPACE.exec(line)?.[0] ?? "").replace("-", " ");
   if (indentation === "") return;
   event.preventDefault();
-  // The only way of putting text in that the browser's own undo knows.
+  // Put in as if it were typed, and told of as that.
   document.execCommand("insertText", false, `\n${indentation}`);
 }

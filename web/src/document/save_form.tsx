@@ -6,17 +6,21 @@ import * as rest from "../wire/rest";
 import type { DocumentSummary } from "../wire/types";
 
 interface SaveFormProps {
-  tree: string | null;
+  /** What is saved, in a sentence. */
+  said: string;
+  document: string | null;
   text: string;
   name: string;
-  trees: readonly DocumentSummary[];
+  others: readonly DocumentSummary[];
+  save: (text: string, name: string) => Promise<{ name: string }>;
   changed: boolean;
   onName: (name: string) => void;
   onSaved: (name: string) => void;
   onDiscard: () => void;
 }
 
-export function SaveForm({ tree, text, name, trees, changed, onName, onSaved, onDiscard }: SaveFormProps) {
+export function SaveForm(props: SaveFormProps) {
+  const { said, document, text, name, others, changed, onName, onSaved, onDiscard } = props;
   const [mistake, setMistake] = useState("");
   const [asking, setAsking] = useState<"replace" | "discard" | null>(null);
   const [saving, setSaving] = useState(false);
@@ -24,7 +28,7 @@ export function SaveForm({ tree, text, name, trees, changed, onName, onSaved, on
     setAsking(null);
     setSaving(true);
     try {
-      onSaved((await rest.saveTree(text, name)).name);
+      onSaved((await props.save(text, name)).name);
     } catch (error) {
       setMistake(
         error instanceof rest.Refusal && error.errors.length > 1
@@ -37,7 +41,7 @@ export function SaveForm({ tree, text, name, trees, changed, onName, onSaved, on
   const submit = (event: SubmitEvent) => {
     event.preventDefault();
     setMistake("");
-    const other = name !== tree && trees.some((each) => each.name === name && !each.built_in);
+    const other = name !== document && others.some((each) => each.name === name && !each.built_in);
     if (other) setAsking("replace");
     else void save();
   };
@@ -73,7 +77,7 @@ export function SaveForm({ tree, text, name, trees, changed, onName, onSaved, on
       </p>
       {asking === "replace" && (
         <Confirm title={`Replace '${name}'?`} confirm="Replace it" onConfirm={() => void save()} onCancel={() => setAsking(null)}>
-          There is another task tree of this name. Its file is lost when this one takes its place.
+          There is another {said} of this name. Its file is lost when this one takes its place.
         </Confirm>
       )}
       {asking === "discard" && (

@@ -1,0 +1,41 @@
+// What keys do at a thing in the top view of a scene.
+import type { Pose } from "./scene_source";
+
+const STEP_M = 0.01;
+const SMALL_STEP_M = 0.001;
+const TURN_RAD = (5 * Math.PI) / 180;
+const SMALL_TURN_RAD = Math.PI / 180;
+
+/** Seen from above: up is forward (x), left is left (y). */
+const WAYS: Readonly<Record<string, readonly [number, number]>> = {
+  ArrowUp: [1, 0],
+  ArrowDown: [-1, 0],
+  ArrowLeft: [0, 1],
+  ArrowRight: [0, -1],
+};
+const TURNS: Readonly<Record<string, number>> = { q: 1, e: -1 };
+const GOES: Readonly<Record<string, "next" | "previous" | "first" | "last">> = {
+  PageDown: "next",
+  PageUp: "previous",
+  Home: "first",
+  End: "last",
+};
+
+export type SceneAction = { change: Partial<Pose> } | { go: "next" | "previous" | "first" | "last" };
+
+type Pressed = Pick<KeyboardEvent, "key" | "shiftKey" | "altKey" | "ctrlKey" | "metaKey">;
+
+/** With Shift steps are small. A robot's base turns by quarters. Null for keys that mean nothing here. */
+export function sceneActionOf(event: Pressed, pose: Pose, robot: boolean): SceneAction | null {
+  if (event.altKey || event.ctrlKey || event.metaKey) return null;
+  const way = WAYS[event.key];
+  const step = event.shiftKey ? SMALL_STEP_M : STEP_M;
+  if (way !== undefined) return { change: way[0] !== 0 ? { x: pose.x + way[0] * step } : { y: pose.y + way[1] * step } };
+  const turn = TURNS[event.key.toLowerCase()];
+  if (turn !== undefined) {
+    const by = robot ? Math.PI / 2 : event.shiftKey ? SMALL_TURN_RAD : TURN_RAD;
+    return { change: { yaw: pose.yaw + turn * by } };
+  }
+  const go = GOES[event.key];
+  return go === undefined ? null : { go };
+}

@@ -1,0 +1,39 @@
+// The buttons of a scene's editor, and whose reach is shown.
+import type { EditedText } from "../document/use_text";
+import { plain } from "../tree/words";
+import type { WorldFit } from "../wire/types";
+
+interface SceneToolsProps {
+  text: EditedText;
+  /** The worlds that know how far their robots reach. */
+  worlds: readonly WorldFit[];
+  shown: WorldFit | undefined;
+  onWorld: (world: string) => void;
+}
+
+export function SceneTools({ text, worlds, shown, onWorld }: SceneToolsProps) {
+  return (
+    <div class="tree-tools" role="group" aria-label="Change the scene">
+      <div class="tool-group">
+        <button type="button" class="tool" disabled={!text.canUndo} onClick={text.undo}>
+          Undo
+        </button>
+        <button type="button" class="tool" disabled={!text.canRedo} onClick={text.redo}>
+          Redo
+        </button>
+      </div>
+      {shown !== undefined && (
+        <label class="tool-group small">
+          Reach of the robots in
+          <select class="tool" value={shown.world} onChange={(event) => onWorld(event.currentTarget.value)}>
+            {worlds.map(({ world }) => (
+              <option key={world} value={world}>
+                {plain(world)}
+              </option>
+            ))}
+          </select>
+        </label>
+      )}
+    </div>
+  );
+}

@@ -1,0 +1,58 @@
+// The library of scenes: what each has, and the way to its editor.
+import { useEffect, useState } from "preact/hooks";
+import { may } from "../state/access";
+import { connection } from "../state/service";
+import * as rest from "../wire/rest";
+import type { SceneSummary } from "../wire/types";
+import "./scenes.css";
+
+export function ScenesView() {
+  const [scenes, setScenes] = useState<readonly SceneSummary[] | null>(null);
+  const [mistake, setMistake] = useState("");
+  const connected = connection.value === "connected";
+  useEffect(() => {
+    rest.scenes().then(setScenes, (error: Error) => setMistake(error.message));
+  }, [connected]);
+  return (
+    <section class="page">
+      <div class="page-head">
+        <h1>Scenes</h1>
+        <div class="page-actions">
+          <a class="button" href="/trees">
+            Task trees
+          </a>
+          {may("operator") && (
+            <a class="button" href="/edit_scene">
+              Write a new one
+            </a>
+          )}
+        </div>
+      </div>
+      <p class="mistake" role="alert">
+        {mistake}
+      </p>
+      {scenes === null ? <p class="quiet">Loading …</p> : <ul class="scene-list">{scenes.map((scene) => <SceneRow key={scene.name} scene={scene} />)}</ul>}
+    </section>
+  );
+}
+
+function SceneRow({ scene }: { scene: SceneSummary }) {
+  const { name, built_in, objects, places } = scene;
+  return (
+    <li class="panel scene-row">
+      <div>
+        <strong class="library-name">{name}</strong> {built_in && <span class="badge">built in</span>}
+        <p class="small quiet">{objects === null ? "It has mistakes by now." : `${counted(objects, "object")}, ${counted(places ?? 0, "place")}`}</p>
+      </div>
+      {may("operator") && (
+        <a class="button" href={`/edit_scene/${name}`} aria-label={`${built_in ? "Copy and edit" : "Edit"} ${name}`}>
+          {built_in ? "Copy and edit" : "Edit"}
+        </a>
+      )}
+    </li>
+  );
+}
+
+function counted(count: number, what: string): string {
+  return count === 1 ? `1 ${what}` : `${count} ${what}s`;
+}

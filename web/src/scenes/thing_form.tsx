@@ -1,0 +1,112 @@
+// The selected thing of a scene in numbers, to be changed.
+import { plain } from "../tree/words";
+import type { Pose, Thing } from "./scene_source";
+import { keyOf, type ThingProblem } from "./thing_problems";
+
+interface ThingFormProps {
+  things: readonly Thing[];
+  thing: Thing;
+  /** Of the table, where the thing says no height. */
+  tableHeight: number;
+  problems: readonly ThingProblem[];
+  onSelect: (key: string) => void;
+  onMove: (change: Partial<Pose>) => void;
+  onShow: () => void;
+}
+
+const GROUPS: readonly (readonly [Thing["kind"], string])[] = [
+  ["object", "Parts"],
+  ["place", "Places"],
+  ["robot", "Robots"],
+];
+const DEGREES = 180 / Math.PI;
+
+export function ThingForm(props: ThingFormProps) {
+  const { things, thing, problems, onSelect, onShow } = props;
+  return (
+    <form class="node-form" aria-label="The selected thing" onSubmit={(event) => event.preventDefault()}>
+      <div class="node-form-head">
+        <div class="field">
+          <label for="scene-thing">Selected</label>
+          <select id="scene-thing" value={keyOf(thing)} onChange={(event) => onSelect(event.currentTarget.value)}>
+            {GROUPS.map(([kind, said]) => (
+              <optgroup key={kind} label={said}>
+                {things
+                  .filter((each) => each.kind === kind)
+                  .map((each) => (
+                    <option key={keyOf(each)} value={keyOf(each)}>
+                      {plain(each.name)}
+                    </option>
+                  ))}
+              </optgroup>
+            ))}
+          </select>
+        </div>
+        {thing.span !== null && (
+          <button type="button" class="tool" onClick={onShow}>
+            Show in the text
+          </button>
+        )}
+      </div>
+      {problems.map(({ message, mistake }) => (
+        <p key={message} class={mistake ? "mistake-line" : "doubt-line"}>
+          {message}
+        </p>
+      ))}
+      {thing.where === null ? (
+        <p class="small quiet">The file names no robot, so one stands in the middle. To move it, add it to 'robots' in the text.</p>
+      ) : (
+        <Numbers {...props} />
+      )}
+    </form>
+  );
+}
+
+function Numbers({ thing, tableHeight, onMove }: ThingFormProps) {
+  const { pose, together, kind } = thing;
+  const enter = (event: { currentTarget: HTMLInputElement }, change: (value: number) => Partial<Pose>) => {
+    const { value, valueAsNumber } = event.currentTarget;
+    if (value !== "" && Number.isFinite(valueAsNumber)) onMove(change(valueAsNumber));
+  };
+  const bottom = kind === "robot" ? 0 : tableHeight;
+  return (
+    <>
+      {together > 1 && <p class="small quiet">It is one of {together} in a grid, which move and turn together.</p>}
+      <div class="node-fields">
+        <div class="field">
+          <label for="thing-x">Forward x (m)</label>
+          <input id="thing-x" type="number" step="0.001" value={shown(pose.x)} onChange={(event) => enter(event, (x) => ({ x }))} />
+        </div>
+        <div class="field">
+          <label for="thing-y">Left y (m)</label>
+          <input id="thing-y" type="number" step="0.001" value={shown(pose.y)} onChange={(event) => enter(event, (y) => ({ y }))} />
+        </div>
+        <div class="field">
+          <label for="thing-z">Bottom z (m)</label>
+          <input
+            id="thing-z"
+            type="number"
+            step="0.001"
+            value={pose.z === null ? "" : shown(pose.z)}
+            placeholder={kind === "robot" ? "0 (the floor)" : `${shown(bottom)} (the table)`}
+            onChange={(event) => (event.currentTarget.value === "" ? onMove({ z: null }) : enter(event, (z) => ({ z })))}
+          />
+        </div>
+        <div class="field">
+          <label for="thing-yaw">Turned left (degrees)</label>
+          <input
+            id="thing-yaw"
+            type="number"
+            step={kind === "robot" ? 90 : 1}
+            value={shown(pose.yaw * DEGREES)}
+            onChange={(event) => enter(event, (degrees) => ({ yaw: degrees / DEGREES }))}
+          />
+        </div>
+      </div>
+    </>
+  );
+}
+
+function shown(value: number): string {
+  return String(Number(value.toFixed(3)));
+}
