@@ -33,6 +33,7 @@ from mend.server.api import (
     speech,
     speech_socket,
     statistics,
+    steering,
 )
 from mend.server.api import fleet as fleet_api
 from mend.server.api import models as models_api
@@ -80,6 +81,7 @@ ROUTES = (
     issues,
     statistics,
     leaves,
+    steering,
     poses_api,
     dialogues,
     questions,

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import JsonValue
 
+from mend.tasks.autonomy import AutonomyLevel
 from mend.tasks.definition import BehaviorNode, GoalNode, NodeKind, TaskTreeDefinition
 from mend.tasks.tree_shape import TreeShape
 
@@ -35,6 +36,7 @@ class NodeTable:
         self._behavior_codes = array("q")
         self._object_codes = array("q")
         self._place_codes = array("q")
+        self._autonomy: dict[int, AutonomyLevel] = {}
         self._known_names: set[str] = set()
         self._known_behaviors: dict[str, int] = {}
         self._known_objects: dict[str, int] = {}
@@ -64,6 +66,8 @@ class NodeTable:
         # Made anew, item by item: the collector of garbage then never looks through a dict of plain
         # values, but it does through one that a library has made, and its copies.
         self._parameters.append({key: value for key, value in node.parameters.items()})  # noqa: C416
+        if node.autonomy is not AutonomyLevel.OFF:
+            self._autonomy[len(self.names) - 1] = node.autonomy
         place = node.place if node.object is None else None
         self._behavior_codes.append(_code(node.behavior, self.behaviors, self._known_behaviors))
         self._object_codes.append(_code(node.object, self.objects, self._known_objects))
@@ -91,6 +95,15 @@ class NodeTable:
         code = self._behavior_codes[node]
         return None if code == NO_CODE else self.behaviors[code]
 
+    @property
+    def declares_autonomy(self) -> bool:
+        """Whether any leaf says what level of autonomy it needs."""
+        return bool(self._autonomy)
+
+    def autonomy_of(self, leaf: int) -> AutonomyLevel:
+        """What level of autonomy a leaf needs."""
+        return self._autonomy.get(leaf, AutonomyLevel.OFF)
+
     def text(self, node: int, parameter: str) -> str | None:
         """A leaf's parameter, if it has it and it is text; None for a goal node."""
         value = self._parameters[node].get(parameter)
@@ -106,6 +119,7 @@ class NodeTable:
             name=self.names[node],
             behavior=self.behaviors[code],
             parameters=dict(self._parameters[node]),
+            autonomy=self.autonomy_of(node),
         )
 
     @property
