@@ -71,7 +71,7 @@ class RunSteering:
         )
         await self._context.commit([said])
 
-    async def offers(self, node: str) -> NodeSteeringView:
+    def offers(self, node: str) -> NodeSteeringView:
         """What would be taken of a node now, and why the rest would not. Raises `NotFoundError`."""
         state = self._context.state
         index = state.tree.index_of(node)
