@@ -192,7 +192,12 @@ class Transcript:
 
     # --- Steering -----------------------------------------------------------------------------
 
-    @lines.register
+    @lines.register(ev.BreakpointSet)
+    @lines.register(ev.BreakpointRemoved)
+    @lines.register(ev.LeafLetGo)
+    @lines.register(ev.LeafPreferred)
+    @lines.register(ev.LeafNotPreferred)
+    @lines.register(ev.LeafTriedAgain)
     def _(self, event: ev.SteeringEvent) -> list[Line]:
         return [_line(event, event.by, told_word(event), Tone.DEED)]
 
