@@ -91,10 +91,17 @@ class Steering:
         """Whether nothing asks for any leaf because of what it needs."""
         return self.level is AutonomyLevel.FULL and not self._tree.nodes.declares_autonomy
 
-    def waits(self, again: Collection[int] = ()) -> list[Hold]:
+    @property
+    def waits(self) -> list[Hold]:
         """The leaves before which somebody waits to be let go, in tree order."""
-        found = (self.hold_on(each, again) for each in sorted(self.waiting))
-        return [each for each in found if each is not None and self._tree.has_its_turn(each.leaf)]
+        found = (self.waiting[leaf] for leaf in sorted(self.waiting))
+        return [each for each in found if self._still_holds(each)]
+
+    def _still_holds(self, hold: Hold) -> bool:
+        # Where another reason is left whoever waits for it says so anew.
+        before = hold.breakpoint
+        holds = before is None or (before in self.breakpoints and not self._tree.touched(before))
+        return holds and self._tree.has_its_turn(hold.leaf)
 
     @property
     def preferred(self) -> int | None:

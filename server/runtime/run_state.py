@@ -153,7 +153,7 @@ class RunState:
     @property
     def held(self) -> list[Hold]:
         """The leaves before which a robot waits to be let go, in tree order."""
-        return [] if self.status.ended else self.steering.waits(self.taken_back)
+        return [] if self.status.ended else self.steering.waits
 
     def execution_of(self, leaf: int) -> StartedExecution | None:
         """The execution of an active leaf."""
@@ -187,6 +187,7 @@ class RunState:
     def _(self, event: ev.LeafTriedAgain) -> None:
         leaf = self.tree.index_of(event.node)
         self.tree.try_again(leaf)
+        self.steering.waiting.pop(leaf, None)
         self.results = None
         self.exhausted.discard(leaf)
         self.left_out.pop(leaf, None)
