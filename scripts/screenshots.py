@@ -83,6 +83,7 @@ SHOTS: dict[str, Shot] = {
     "question_phone_dark": Shot(question_in_workcell, theme="dark", phone=True),
     "waiting": Shot(situations.waiting_for_help),
     "run_finished": Shot(situations.finished_run, theme="dark"),
+    "steering": Shot(situations.steered_run),
     "runs": Shot(situations.runs),
     "trees": Shot(situations.trees),
     "editor": Shot(situations.wrong_tree),

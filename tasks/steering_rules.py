@@ -82,7 +82,7 @@ def why_not_its_turn(tree: TaskTree, leaf: int) -> str | None:
     if tree.done(leaf):
         return f"{name} is done already"
     if (owner := tree.owner(leaf)) is not None:
-        return f"{owner} is at {name} just now: wait until it is done or put back"
+        return f"{name} is being done by {owner}: wait until it is done or put back"
     if tree.abandoned(leaf):
         return f"{name} belongs to an alternative that was given up: let it be tried again first"
     node: int | None = leaf
@@ -109,7 +109,9 @@ def _chosen_instead(tree: TaskTree, node: int) -> int | None:
 def _no_breakpoint(tree: TaskTree, steering: Steering, node: int) -> str | None:
     name = f"'{tree.name_of(node)}'"
     if node in steering.breakpoints:
-        return f"{steering.breakpoints[node].by} has set a breakpoint before {name} already"
+        return (
+            f"there is a breakpoint before {name} already, set by {steering.breakpoints[node].by}"
+        )
     if tree.done(node):
         return f"{name} is done already: a breakpoint stands before what is still to begin"
     if tree.touched(node):
@@ -127,7 +129,7 @@ def _no_breakpoint(tree: TaskTree, steering: Steering, node: int) -> str | None:
 def _not_next(about: Steered, leaf: int) -> str | None:
     tree, steering = about.tree, about.steering
     if steering.next is not None and steering.next[0] == leaf:
-        return f"{steering.next[1].by} has asked for '{tree.name_of(leaf)}' next already"
+        return f"'{tree.name_of(leaf)}' is next already, as {steering.next[1].by} has asked"
     if steering.hold_on(leaf, about.again) is not None:
         return f"'{tree.name_of(leaf)}' waits to be let go: let it go on instead"
     return None
@@ -137,7 +139,7 @@ def _not_again(about: Steered, leaf: int) -> str | None:
     tree = about.tree
     name = f"'{tree.name_of(leaf)}'"
     if (owner := tree.owner(leaf)) is not None:
-        return f"{owner} is at {name} just now: wait until it is done or put back"
+        return f"{name} is being done by {owner}: wait until it is done or put back"
     if tree.done(leaf):
         return _not_put_in(about, leaf)
     if tree.abandoned(leaf):

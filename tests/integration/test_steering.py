@@ -122,7 +122,9 @@ async def test_breakpoints_and_levels_still_hold_after_the_service_was_killed(
         assert after == before.model_copy(update={"seq": after.seq})
         assert [each.by for each in after.breakpoints] == ["ann"]
         assert [each.node for each in after.waits] == [BLUE]
-        with pytest.raises(ConflictError, match="ann has set a breakpoint before 'blue_box'"):
+        with pytest.raises(
+            ConflictError, match="there is a breakpoint before 'blue_box' already, set by ann"
+        ):
             await steer(service, run, "set_breakpoint", BLUE)
         await steer(service, run, "remove_breakpoint", BLUE)
         assert started(await to_the_end(service, run)) == [RED, BLUE]

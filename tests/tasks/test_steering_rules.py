@@ -40,7 +40,7 @@ def test_of_an_or_only_the_chosen_alternative_is_steered(act: str) -> None:
     about.tree.start(node_called(about.tree, "b"), "pr2")
     reason = "was chosen instead of 'a', and only one of the alternatives is done"
     assert why(about, act, "a") == f"'g2' {reason}"
-    assert why(about, act, "b") == "pr2 is at 'b' just now: wait until it is done or put back"
+    assert why(about, act, "b") == "'b' is being done by pr2: wait until it is done or put back"
 
 
 def test_a_breakpoint_stands_before_what_has_not_begun() -> None:
@@ -48,7 +48,9 @@ def test_a_breakpoint_stands_before_what_has_not_begun() -> None:
     tree, steering = about.tree, about.steering
     assert why(about, "set_breakpoint", "g2") is None
     steering.set_breakpoint(node_called(tree, "g2"), ANN)
-    assert why(about, "set_breakpoint", "g2") == ("ann has set a breakpoint before 'g2' already")
+    assert why(about, "set_breakpoint", "g2") == (
+        "there is a breakpoint before 'g2' already, set by ann"
+    )
     assert why(about, "remove_breakpoint", "d") == (
         "there is no breakpoint before 'd': nothing to remove"
     )
@@ -182,7 +184,7 @@ def test_the_last_word_says_what_is_next() -> None:
     about = steered(running_tree(and_("a", "b")))
     steering = about.steering
     steering.prefer(1, ANN)
-    assert why(about, "do_next", "a") == "ann has asked for 'a' next already"
+    assert why(about, "do_next", "a") == "'a' is next already, as ann has asked"
     steering.prefer(2, ANN)
     assert steering.preferred == 2
     assert why(about, "not_next", "a") == "nobody has asked for 'a' next"

@@ -9,13 +9,13 @@ const held = { name: "blue_box", node: "/1/0", breakpoint: "/1", by: "ann", reas
 
 describe("why a run waits", () => {
   it("names who has set the breakpoint, and their reason", () => {
-    expect(whyItWaits(held)).toBe("Waits before blue box: breakpoint set by ann.");
-    expect(whyItWaits({ ...held, reason: "wet glue" })).toBe("Waits before blue box: breakpoint set by ann (wet glue).");
+    expect(whyItWaits(held)).toBe("waits before blue box: breakpoint set by ann.");
+    expect(whyItWaits({ ...held, reason: "wet glue" })).toBe("waits before blue box: breakpoint set by ann (wet glue).");
   });
 
   it("names the level where that asks", () => {
     expect(whyItWaits({ ...held, breakpoint: null, by: null, level: "low" })).toBe(
-      "Waits before blue box: with autonomy low it asks first.",
+      "waits before blue box: with autonomy low it asks first.",
     );
   });
 });

@@ -169,6 +169,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
   const chosen = views.find((view) => view.node === selected) ?? null;
   const choice = (
     <div class="run-choice">
+      <SteeringPanel state={state} selected={chosen} newest={newest} onSelect={setSelected} />
       <ChoicePanel node={chosen} choices={choices} result={state.result} onChoose={goToEvent} />
       {(state.people.size > 0 || !ended(latest.status)) && (
         <Leaves
@@ -181,7 +182,6 @@ function Shown({ feed, version, state, latest }: ShownProps) {
       )}
     </div>
   );
-  const steering = <SteeringPanel state={state} selected={chosen} newest={newest} onSelect={setSelected} />;
   const talk = (
     <Talk state={state} newest={newest}>
       {waits.length > 0 && <RunWaits run={state.started.run} waits={waits} going={newest} />}
@@ -222,7 +222,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
           {talk}
           <Tabs
             panels={[
-              { id: "tree", name: "Tree", content: [tree, steering, choice] },
+              { id: "tree", name: "Tree", content: [tree, choice] },
               { id: "world", name: plan === null ? "Scene" : "Building", content: [world, cameras] },
               { id: "timeline", name: "Timeline", content: timeline },
               { id: "transcript", name: "Transcript", content: transcript },
@@ -232,10 +232,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
       ) : (
         <>
           <div class="run-area world">{world}</div>
-          <div class="run-area tree">
-            {tree}
-            {steering}
-          </div>
+          <div class="run-area tree">{tree}</div>
           <div class="run-area timeline">{timeline}</div>
           <div class="run-area side">
             {talk}

@@ -35,7 +35,7 @@ export const STATE_WORDS: Readonly<Record<NodeState, string>> = {
 
 /** The word under a node: who does what is active, where that is a person. */
 export function stateWord(node: TreeNode, state: NodeState): string {
-  if (node.steered?.waits === true) return "waits to go on";
+  if (node.steered?.waits === true) return "waits";
   if (node.steered?.next === true && state === "eligible") return "next";
   return node.byPerson ? "a person" : STATE_WORDS[state];
 }

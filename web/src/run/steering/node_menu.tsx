@@ -11,8 +11,12 @@ interface NodeMenuProps {
   say(act: SteerNodeRequest["act"]): void;
 }
 
+/** That something which was never said cannot be taken back needs no words. */
+const GOES_WITHOUT_SAYING: ReadonlySet<string> = new Set(["go_on", "remove_breakpoint", "not_next"]);
+
 export function NodeMenu({ offers, busy, say }: NodeMenuProps) {
   const id = useId();
+  const refused = offers.refused.filter(({ act }) => !GOES_WITHOUT_SAYING.has(act));
   return (
     <div class="node-menu" role="group" aria-label={`Steer ${plain(offers.name)}`}>
       <h3>{plain(offers.name)}</h3>
@@ -29,11 +33,11 @@ export function NodeMenu({ offers, busy, say }: NodeMenuProps) {
           </li>
         ))}
       </ul>
-      {offers.refused.length > 0 && (
+      {refused.length > 0 && (
         <details class="small">
           <summary>What cannot be said now</summary>
           <ul>
-            {offers.refused.map(({ act, why }) => (
+            {refused.map(({ act, why }) => (
               <li key={act}>
                 <b>{ACT_WORDS[act]}</b>: {sentence(why)}
               </li>

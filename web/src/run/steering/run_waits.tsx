@@ -34,7 +34,7 @@ export function RunWaits({ run, tree, waits, going }: RunWaitsProps) {
       {waits.map((wait) => (
         <div key={wait.node} class="run-wait">
           <p>
-            {tree !== undefined && <a href={`/runs/${run}`}>{plain(tree)}</a>} {whyItWaits(wait)}
+            {tree === undefined ? "The run" : <a href={`/runs/${run}`}>{plain(tree)}</a>} {whyItWaits(wait)}
           </p>
           {going && may("operator") && (
             <button type="button" class="button primary" disabled={busy} aria-label={`Go on: ${plain(wait.name)}`} onClick={() => letGo(wait.node)}>

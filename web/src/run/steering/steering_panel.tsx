@@ -41,6 +41,8 @@ export function SteeringPanel({ state, selected, newest, onSelect }: SteeringPan
   };
   const said = { reason: reason.trim(), helper: helperName.value };
   const { autonomy, breakpoints, preferred } = state.steering;
+  // Of a run that is over there is nothing to say where nothing was said.
+  if (!going && breakpoints.size === 0 && autonomy === "full") return null;
   return (
     <section class="panel steering" aria-labelledby="steering-title">
       <h2 id="steering-title">Steering</h2>
