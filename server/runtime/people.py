@@ -50,13 +50,12 @@ class People:
     async def say_done(
         self, node: str, helper: str, reason: str, author: ev.Author | None = None
     ) -> None:
-        """A person says that they have done a leaf: a robot looks, for as long as for any help.
+        """A person says that they have done a leaf: a robot looks, and says what it sees.
 
         Raises as `take`.
         """
         leaf = self.may_take(node)
-        until = self._context.clock.now() + self._context.settings.help_window_s
-        said = {"until": until, "said_done": True, "reason": reason}
+        said = {"said_done": True, "reason": reason}
         await self._context.commit([self._taken(leaf, helper, author).model_copy(update=said)])
 
     def may_take(self, node: str) -> int:
@@ -153,16 +152,25 @@ class People:
             object=definition.object,
             place=definition.place,
             expect="at_place",
-            within_s=max(0.0, taken.until - self._context.clock.now()),
+            within_s=self._looked_for_s(taken),
             rate=AS_FAST_AS_PEOPLE,
         )
+
+    def _looked_for_s(self, taken: ev.NodeTaken) -> float:
+        left_s = max(0.0, taken.until - self._context.clock.now())
+        return min(left_s, self._context.settings.help_window_s) if taken.said_done else left_s
 
     async def judged(self, proxy: RobotProxy, looked: Looked) -> None:
         """Take what a look says of the results that people were to bring about."""
         awaited = self._awaited()
         done = [awaited[each] for each in looked.there if each in awaited]
-        if done:
-            await self._context.commit([self._done(leaf, proxy) for leaf in done])
+        unseen = [awaited[each] for each in looked.gone if each in awaited]
+        said = self._context.state.people
+        back = [leaf for leaf in unseen if said[leaf].said_done]
+        events: list[ev.Event] = [self._done(leaf, proxy) for leaf in done]
+        events += [self._reset(leaf, _why_not_done(said[leaf])) for leaf in back]
+        if events:
+            await self._context.commit(events)
 
     def _done(self, leaf: int, proxy: RobotProxy) -> ev.NodeDone:
         state = self._context.state

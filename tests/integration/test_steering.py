@@ -12,6 +12,8 @@ from two_boxes import BENCH, BLUE, BOTH, RED
 from untruths import kinds_of
 
 from mend.errors import ConflictError
+from mend.server.client import MendClient
+from mend.server.client_errors import RefusedError
 from mend.server.composition import Service, open_service
 from mend.server.journal import events as ev
 from mend.server.journal.sqlite import IN_MEMORY
@@ -198,6 +200,31 @@ async def test_what_is_said_to_be_done_and_not_seen_is_anybodys_again() -> None:
         assert "ann said that it was done, but no robot has seen it" in back.reason
         await set_autonomy(service, run, "full")
         assert sorted(started(await to_the_end(service, run))) == [RED, BLUE]
+
+
+async def test_over_rest_a_refusal_is_one_sentence_and_offers_say_what_is_taken() -> None:
+    async with bench() as service, MendClient(service.url) as client:
+        run = await begin(service, "in_order")
+        await waits_before(service, RED)
+        offers = await client.steering_offers(run, RED)
+        assert {each.act for each in offers.offered} == {
+            "go_on",
+            "set_breakpoint",
+            "leave_out",
+            "done_by_hand",
+        }
+        view = await client.steer(run, SteerNode(act="set_breakpoint", node=RED), "ann")
+        assert [(each.node, each.by) for each in view.breakpoints] == [(RED, "ann")]
+        with pytest.raises(RefusedError) as refused:
+            await client.steer(run, SteerNode(act="go_on", node=BLUE), "ann")
+        assert refused.value.problem.status == 409
+        assert "'red_box' comes before 'blue_box'" in refused.value.problem.detail
+        with pytest.raises(RefusedError) as missing:
+            await client.steer(run, SteerNode(act="go_on", node="/7"), "ann")
+        assert missing.value.problem.status == 404
+        level = SetAutonomy(act="set_autonomy", level=AutonomyLevel.LOW)
+        assert (await client.steer(run, level, "ann")).autonomy == "low"
+        assert (await client.steering(run)).waits == (await client.run(run)).waits
 
 
 async def test_what_would_break_the_order_is_refused_with_a_sentence() -> None:

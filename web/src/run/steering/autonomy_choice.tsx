@@ -31,12 +31,20 @@ export function AutonomyChoice({ level, disabled, onChoose }: AutonomyChoiceProp
           });
         }}
       >
-        {LEVELS.map((each) => (
-          <option key={each} value={each}>
-            {`${each}: ${LEVEL_WORDS[each]}`}
-          </option>
-        ))}
+        <LevelOptions />
       </select>
     </div>
+  );
+}
+
+export function LevelOptions() {
+  return (
+    <>
+      {LEVELS.map((level) => (
+        <option key={level} value={level}>
+          {`${level}: ${LEVEL_WORDS[level]}`}
+        </option>
+      ))}
+    </>
   );
 }
