@@ -29,7 +29,9 @@ class AutonomyLevel(StrEnum):
         return needed.rank < self.rank
 
 
-_RANKS = {level: rank for rank, level in enumerate(AutonomyLevel)}
+LEVELS = tuple(AutonomyLevel)
+"""Each at its rank."""
+_RANKS = {level: rank for rank, level in enumerate(LEVELS)}
 
 RECOVERY = AutonomyLevel.LOW
 """What it needs at least to begin what has failed, or what was done and is gone."""

@@ -80,11 +80,17 @@ class Steering:
                 first, last = np.searchsorted(leaves, (node, self._tree.end_of(node)))
                 held[first:last] = True
         if not self._allows_all:
-            by_level = (self.level.allows(self.needed(int(each), again)) for each in leaves)
-            held |= ~np.fromiter(by_level, np.bool_, leaves.size)
+            held |= self._needed_ranks(leaves, again) >= self.level.rank
         if self.let_go:
             held &= ~np.isin(leaves, list(self.let_go))
         return held
+
+    def _needed_ranks(self, leaves: NDArray[np.int64], again: Collection[int]) -> NDArray[np.int8]:
+        recovers = self._tree.attempts_of(leaves) > 0
+        if again:
+            recovers |= np.isin(leaves, list(again))
+        declared = self._tree.nodes.autonomy_ranks[leaves]
+        return np.where(recovers, np.maximum(declared, RECOVERY.rank), declared)
 
     @property
     def _allows_all(self) -> bool:

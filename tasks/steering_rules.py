@@ -106,8 +106,14 @@ def _chosen_instead(tree: TaskTree, node: int) -> int | None:
     return None if committed in (None, node) else committed
 
 
+MOST_BREAKPOINTS = 100
+"""Each is gone through at every choice of a robot."""
+
+
 def _no_breakpoint(tree: TaskTree, steering: Steering, node: int) -> str | None:
     name = f"'{tree.name_of(node)}'"
+    if len(steering.breakpoints) >= MOST_BREAKPOINTS and node not in steering.breakpoints:
+        return f"there are {MOST_BREAKPOINTS} breakpoints already: remove one of them first"
     if node in steering.breakpoints:
         return (
             f"there is a breakpoint before {name} already, set by {steering.breakpoints[node].by}"

@@ -109,7 +109,7 @@ async def test_a_run_waits_before_a_breakpoint_until_it_is_let_go() -> None:
         assert (await service.runtime.run_summary(run)).waits == []
 
 
-async def test_breakpoints_and_levels_still_hold_after_the_service_was_killed(
+async def test_breakpoints_and_levels_still_hold_after_a_restart(
     tmp_path: Path,
 ) -> None:
     journal = tmp_path / "journal.db"
