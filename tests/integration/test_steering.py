@@ -1,6 +1,7 @@
 """People steer a run: it waits where they said, and goes on when they say so."""
 
 import asyncio
+import shutil
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -109,7 +110,7 @@ async def test_a_run_waits_before_a_breakpoint_until_it_is_let_go() -> None:
         assert (await service.runtime.run_summary(run)).waits == []
 
 
-async def test_breakpoints_and_levels_still_hold_after_a_restart(
+async def test_breakpoints_and_levels_still_hold_after_the_service_was_killed(
     tmp_path: Path,
 ) -> None:
     journal = tmp_path / "journal.db"
@@ -119,7 +120,12 @@ async def test_breakpoints_and_levels_still_hold_after_a_restart(
         await set_autonomy(service, run, "full")
         await waits_before(service, BLUE)
         before = await service.runtime.steering(run)
-    async with bench(journal) as service:
+        # What is on the disk at any moment is what a killed service leaves behind.
+        left = tmp_path / "left"
+        left.mkdir()
+        for file in (journal, journal.with_name("journal.db-wal")):
+            shutil.copy(file, left)
+    async with bench(left / journal.name) as service:
         after = await service.runtime.steering(run)
         assert after == before.model_copy(update={"seq": after.seq})
         assert [each.by for each in after.breakpoints] == ["ann"]
