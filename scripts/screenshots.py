@@ -75,6 +75,12 @@ async def fresh_start(_: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def steered_run(service: Service, open_page: OpenPage) -> Page:
+    page = await situations.steered_run(service, open_page)
+    await page.locator(".side").evaluate("(side) => side.scrollTo(0, 0)")
+    return page
+
+
 SHOTS: dict[str, Shot] = {
     "console": Shot(run_in_workcell),
     "console_dark": Shot(run_in_workcell, theme="dark"),
@@ -83,6 +89,7 @@ SHOTS: dict[str, Shot] = {
     "question_phone_dark": Shot(question_in_workcell, theme="dark", phone=True),
     "waiting": Shot(situations.waiting_for_help),
     "run_finished": Shot(situations.finished_run, theme="dark"),
+    "steering": Shot(steered_run),
     "runs": Shot(situations.runs),
     "trees": Shot(situations.trees),
     "editor": Shot(situations.wrong_tree),

@@ -34,6 +34,7 @@ from mend.server.api import (
     speech,
     speech_socket,
     statistics,
+    steering,
 )
 from mend.server.api import fleet as fleet_api
 from mend.server.api import models as models_api
@@ -82,6 +83,7 @@ ROUTES = (
     issues,
     statistics,
     leaves,
+    steering,
     poses_api,
     dialogues,
     questions,

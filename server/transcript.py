@@ -5,6 +5,7 @@ from functools import singledispatchmethod
 from mend.dialogue.evidence import Change
 from mend.dialogue.script import CloseReason, Help
 from mend.server.journal import events as ev
+from mend.server.steering_words import because, told_level, told_wait, told_word
 from mend.server.transcript_line import Line, Tone
 from mend.server.transcript_words import (
     by,
@@ -150,7 +151,10 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.NodeTaken) -> list[Line]:
-        return [_line(event, event.helper, f"has taken {event.name}, to do it", Tone.CHOICE)]
+        text = f"has taken {event.name}, to do it"
+        if event.said_done:
+            text = f"says that {event.name} is done by hand{because(event.reason)}"
+        return [_line(event, event.helper, text, Tone.CHOICE)]
 
     @lines.register
     def _(self, event: ev.StepStarted) -> list[Line]:
@@ -173,7 +177,7 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.NodeLeftOut) -> list[Line]:
-        text = f"{event.name} is left out, as {event.helper} said"
+        text = f"{event.name} is left out, as {event.helper} said{because(event.reason)}"
         return [_line(event, "", text, Tone.SETBACK)]
 
     @lines.register
@@ -185,6 +189,25 @@ class Transcript:
     def _(self, event: ev.NodeAbandoned) -> list[Line]:
         text = f"the alternative {event.name} is abandoned: {event.reason}"
         return [_line(event, "", text, Tone.SETBACK)]
+
+    # --- Steering -----------------------------------------------------------------------------
+
+    @lines.register(ev.BreakpointSet)
+    @lines.register(ev.BreakpointRemoved)
+    @lines.register(ev.LeafLetGo)
+    @lines.register(ev.LeafPreferred)
+    @lines.register(ev.LeafNotPreferred)
+    @lines.register(ev.LeafTriedAgain)
+    def _(self, event: ev.SteeringEvent) -> list[Line]:
+        return [_line(event, event.by, told_word(event), Tone.DEED)]
+
+    @lines.register
+    def _(self, event: ev.AutonomySet) -> list[Line]:
+        return [_line(event, event.by, told_level(event), Tone.DEED)]
+
+    @lines.register
+    def _(self, event: ev.LeafHeld) -> list[Line]:
+        return [_line(event, self._robot(event.robot), told_wait(event), Tone.WATCHED)]
 
     # --- Issues and dialogues -----------------------------------------------------------------
 
@@ -346,6 +369,8 @@ def _comparison(event: ev.NodeStarted) -> str:
     """The potential of the chosen leaf against the best of the others; nothing without a choice."""
     chosen = next((each for each in event.candidates if each.node == event.node), None)
     others = [each for each in event.candidates if each.node != event.node]
+    if chosen is not None and chosen.asked_for_by is not None:
+        return f" (asked for by {chosen.asked_for_by})"
     if chosen is None or not others:
         return ""
     rivals = ", ".join(_rival(each) for each in others[:3])

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, JsonValue, model_validator
 
 from mend.documents.strict_model import StrictModel
+from mend.tasks.autonomy import AutonomyLevel
 from mend.tasks.scene import Name
 
 
@@ -35,14 +36,24 @@ class GoalNode(StrictModel):
     name: Name
 
 
+def _is_usual(needed: AutonomyLevel) -> bool:
+    return needed is AutonomyLevel.OFF
+
+
 class BehaviorNode(StrictModel):
-    """A leaf: a behavior and its checked parameters."""
+    """A leaf: a behavior and its checked parameters.
+
+    `autonomy`: what level a run needs more than to begin it by itself.
+    """
 
     kind: Literal["behavior"] = "behavior"
     parent: Annotated[int, Field(ge=0)] | None
     name: Name
     behavior: str
     parameters: dict[str, JsonValue] = {}
+    autonomy: Annotated[AutonomyLevel, Field(strict=False, exclude_if=_is_usual)] = (
+        AutonomyLevel.OFF
+    )
 
     @property
     def object(self) -> str | None:

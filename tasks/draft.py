@@ -7,6 +7,7 @@ from typing import Any
 from mend.documents.document import LinedMapping
 from mend.documents.problem import Problem
 from mend.documents.validation import show_kind
+from mend.tasks.autonomy import AutonomyLevel
 
 MAX_NODES = 200_000
 MAX_NODE_DEPTH = 250
@@ -30,6 +31,7 @@ class DraftNode:
     name: str | None = None
     behavior: str | None = None
     parameters: LinedMapping | None = None
+    autonomy: AutonomyLevel = AutonomyLevel.OFF
 
 
 @dataclass(slots=True)

@@ -6,7 +6,7 @@ from pydantic import BaseModel, TypeAdapter
 
 from mend.tasks.flat_form import IGNORED_KEYS
 from mend.tasks.leaf_check import Behaviors
-from mend.tasks.nested_form import GOAL_KEYS
+from mend.tasks.nested_form import DECLARED_AUTONOMY, GOAL_KEYS
 from mend.tasks.part_rows import Grid
 from mend.tasks.scenario import Scenario
 from mend.tasks.scene import Name, Scene
@@ -89,6 +89,7 @@ def _leaf_schema(
     properties = {
         "name": {"$ref": "#/$defs/name"},
         "behavior": {"const": behavior},
+        "autonomy": {"enum": list(DECLARED_AUTONOMY)},
         **parameters.get("properties", {}),
     }
     return _object(properties, ["behavior", *parameters.get("required", [])])

@@ -6,9 +6,12 @@ from typing import Any
 from mend.documents.document import LinedMapping, LinedSequence
 from mend.documents.problem import Problem
 from mend.documents.validation import show_kind
+from mend.tasks.autonomy import AutonomyLevel
 from mend.tasks.draft import MAX_NODES, Draft, DraftNode, find_name_mistake
 
 GOAL_KEYS = ("then", "and", "or")
+DECLARED_AUTONOMY = ("low", "high", "full")
+"""What a leaf may say that it needs; nothing is what it needs without it."""
 _KIND_KEYS = (*GOAL_KEYS, "behavior")
 
 _Pending = tuple[Any, int, int | None, int]
@@ -93,10 +96,22 @@ def _read_leaf(draft: Draft, index: int) -> None:
         return
     node.behavior = behavior
     node.parameters = LinedMapping(node.source.line)
+    if "autonomy" in node.source:
+        _read_autonomy(draft, index)
     for key, value in node.source.items():
-        if key not in ("behavior", "name"):
+        if key not in ("behavior", "name", "autonomy"):
             node.parameters[key] = value
             node.parameters.key_lines[key] = node.source.line_of(key)
+
+
+def _read_autonomy(draft: Draft, index: int) -> None:
+    node = draft.nodes[index]
+    declared = node.source["autonomy"]
+    if declared in DECLARED_AUTONOMY:
+        node.autonomy = AutonomyLevel(declared)
+        return
+    message = f"'autonomy' must be low, high or full, but it is {show_kind(declared)}"
+    draft.report(index, node.source.line_of("autonomy"), message)
 
 
 def _meant(value: LinedMapping) -> str:

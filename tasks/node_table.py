@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import JsonValue
 
+from mend.tasks.autonomy import LEVELS, AutonomyLevel
 from mend.tasks.definition import BehaviorNode, GoalNode, NodeKind, TaskTreeDefinition
 from mend.tasks.tree_shape import TreeShape
 
@@ -35,6 +36,9 @@ class NodeTable:
         self._behavior_codes = array("q")
         self._object_codes = array("q")
         self._place_codes = array("q")
+        self._autonomy_ranks = array("b")
+        self.declares_autonomy = False
+        """Whether any leaf says what level of autonomy it needs."""
         self._known_names: set[str] = set()
         self._known_behaviors: dict[str, int] = {}
         self._known_objects: dict[str, int] = {}
@@ -60,10 +64,13 @@ class NodeTable:
             self._parameters.append(_NONE)
             for codes in (self._behavior_codes, self._object_codes, self._place_codes):
                 codes.append(NO_CODE)
+            self._autonomy_ranks.append(AutonomyLevel.OFF.rank)
             return
         # Made anew, item by item: the collector of garbage then never looks through a dict of plain
         # values, but it does through one that a library has made, and its copies.
         self._parameters.append({key: value for key, value in node.parameters.items()})  # noqa: C416
+        self._autonomy_ranks.append(node.autonomy.rank)
+        self.declares_autonomy |= node.autonomy is not AutonomyLevel.OFF
         place = node.place if node.object is None else None
         self._behavior_codes.append(_code(node.behavior, self.behaviors, self._known_behaviors))
         self._object_codes.append(_code(node.object, self.objects, self._known_objects))
@@ -91,6 +98,10 @@ class NodeTable:
         code = self._behavior_codes[node]
         return None if code == NO_CODE else self.behaviors[code]
 
+    def autonomy_of(self, leaf: int) -> AutonomyLevel:
+        """What level of autonomy a leaf needs."""
+        return LEVELS[self._autonomy_ranks[leaf]]
+
     def text(self, node: int, parameter: str) -> str | None:
         """A leaf's parameter, if it has it and it is text; None for a goal node."""
         value = self._parameters[node].get(parameter)
@@ -106,7 +117,13 @@ class NodeTable:
             name=self.names[node],
             behavior=self.behaviors[code],
             parameters=dict(self._parameters[node]),
+            autonomy=self.autonomy_of(node),
         )
+
+    @property
+    def autonomy_ranks(self) -> NDArray[np.int8]:
+        """The rank of the level of autonomy that every node needs."""
+        return np.frombuffer(self._autonomy_ranks, dtype=np.int8)
 
     @property
     def behavior_codes(self) -> NDArray[np.int64]:

@@ -191,6 +191,7 @@ def _make_nodes(
                     name=names[index],
                     behavior=node.behavior or "",
                     parameters=parameters[index],
+                    autonomy=node.autonomy,
                 )
             )
         else:

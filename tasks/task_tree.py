@@ -115,6 +115,19 @@ class TaskTree:
         child = self._state.committed[or_node]
         return None if child == NO_NODE else child
 
+    def touched(self, node: int) -> bool:
+        """Whether anything at or under a node is active or done."""
+        return self._state.touched(node)
+
+    def comes_first(self, node: int) -> int | None:
+        """The earlier child of a THEN that has to be done before this one may begin, if any."""
+        parent = self._shape.parents[node]
+        if parent == NO_NODE or self._shape.kinds[parent] is not NodeKind.THEN:
+            return None
+        first = self._state.next_child(parent)
+        earlier = first != NO_NODE and self._shape.positions[first] < self._shape.positions[node]
+        return first if earlier else None
+
     def active_leaves(self) -> list[int]:
         """The active leaves, in tree order."""
         return find_active_leaves(self._shape, self._state, 0)
@@ -155,6 +168,11 @@ class TaskTree:
         """Whether a leaf may be started now."""
         idle = self._state.leaf_status[leaf] is LeafStatus.IDLE
         return idle and self.running and not self.done(leaf) and self._reached(leaf)
+
+    def has_its_turn(self, leaf: int) -> bool:
+        """Whether a leaf may be started, were the run not paused."""
+        idle = self._state.leaf_status[leaf] is LeafStatus.IDLE
+        return idle and not self.abandoned(leaf) and self._reached(leaf)
 
     def eligible_leaves(self) -> NDArray[np.int64]:
         """The leaves that may be started now, in tree order (read-only)."""
@@ -258,6 +276,21 @@ class TaskTree:
             raise self._illegal(alternative, "abandon", expected)
         self._state.abandon(alternative)
         self._eligible.note_change(alternative)
+
+    def try_again(self, leaf: int) -> None:
+        """Do a leaf as if it were new: not done, not given up, without failed attempts.
+
+        Raises `IllegalTransitionError` if it is active, or as `take_back` does.
+        """
+        if self._leaf_status(leaf) is LeafStatus.ACTIVE:
+            raise self._illegal(leaf, "try again", "idle or done")
+        if self.done(leaf):
+            self.take_back(leaf)
+        self._attempts[leaf] = 0
+        if self.abandoned(leaf):
+            self._state.reopen(leaf)
+            # What is before it may have been taken back meanwhile: nobody knows where level is.
+            self._eligible.note_change(0)
 
     def _alternatives_left_besides(self, node: int) -> list[int]:
         parent = self._shape.parents[node]

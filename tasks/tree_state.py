@@ -39,6 +39,8 @@ class TreeState:
         """How many leaves under a node (or the leaf itself) are done."""
         self.done_children = array("q", [0]) * size
         self.done = bytearray(size)
+        self.given_up: set[int] = set()
+        """The alternatives that were abandoned themselves."""
         self.abandoned = bytearray(size)
         """Set for an abandoned alternative and every node under it."""
         self.committed = array("q", [NO_NODE]) * size
@@ -54,6 +56,7 @@ class TreeState:
         copied.done_leaves = self.done_leaves[:]
         copied.done_children = self.done_children[:]
         copied.done = self.done[:]
+        copied.given_up = self.given_up.copy()
         copied.abandoned = self.abandoned[:]
         copied.committed = self.committed[:]
         return copied
@@ -166,5 +169,24 @@ class TreeState:
 
     def abandon(self, alternative: int) -> None:
         """Mark an alternative and everything under it abandoned."""
+        self.given_up.add(alternative)
+        self._mark(alternative)
+
+    def _mark(self, alternative: int) -> None:
         end = self._shape.ends[alternative]
         self.abandoned[alternative:end] = b"\x01" * (end - alternative)
+
+    def reopen(self, leaf: int) -> None:
+        """Take up every abandoned alternative at or above a leaf."""
+        above, node = [], leaf
+        while node != NO_NODE:
+            if node in self.given_up:
+                above.append(node)
+            node = self._shape.parents[node]
+        top = above[-1]
+        self.given_up.difference_update(above)
+        end = self._shape.ends[top]
+        self.abandoned[top:end] = bytes(end - top)
+        for each in self.given_up:
+            if top < each < end:
+                self._mark(each)

@@ -13,6 +13,7 @@ from mend.server.journal import events as ev
 from mend.server.journal.chain import Seal
 from mend.server.journal.journal import UnreadableEvent
 from mend.server.journal.reader import JournalReader
+from mend.server.steering_words import because, told_level, told_word
 
 
 class Deed(BaseModel):
@@ -66,6 +67,8 @@ DEEDS: frozenset[str] = frozenset(
         "document_kept", "document_deleted", "signed_in", "sign_in_failed", "signed_out",
         "access_changed", "site_opened", "site_closed", "node_taken", "request_changed",
         "fleet_told", "errand_begun", "push_subscribed", "push_ended",
+        "autonomy_set", "breakpoint_set", "breakpoint_removed", "leaf_let_go", "leaf_preferred",
+        "leaf_not_preferred", "leaf_tried_again", "node_left_out",
     }
 )  # fmt: skip
 """The types of events that are deeds; some of them only where somebody did them."""
@@ -166,6 +169,12 @@ def _what(event: ev.Event) -> str | None:
             return f"intervened: {act}" + (f" '{part}'" if part else "")
         case ev.NodeTaken(name=name, helper=helper):
             return f"took '{name}' as '{helper}', to do it"
+        case ev.SteeringEvent():
+            return f"steered: {told_word(event)}"
+        case ev.AutonomySet():
+            return f"steered: {told_level(event)}"
+        case ev.NodeLeftOut(robot=None, name=name, reason=reason):
+            return f"steered: leaves {name} out{because(reason)}"
         case ev.SignedOut():
             return "signed out"
     return _what_of_dialogue(event) or _what_of_access(event) or _what_of_push(event)

@@ -121,7 +121,7 @@ class RunRecord:
         self._end_execution(event, "left out")
 
     @_take.register
-    def _(self, event: ev.NodeReturned) -> None:
+    def _(self, event: ev.NodeReturned | ev.LeafTriedAgain) -> None:
         self.left_out.pop(event.node, None)
 
     @_take.register

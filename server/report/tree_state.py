@@ -32,8 +32,13 @@ def _folded(record: RunRecord) -> TaskTree:
                 tree.start(tree.index_of(event.node), event.robot)
             case ev.NodeTaken():
                 tree.start(tree.index_of(event.node), event.helper)
+            case ev.NodeLeftOut(robot=None):
+                tree.start(tree.index_of(event.node), event.helper)
+                tree.finish(tree.index_of(event.node))
             case ev.NodeDone() | ev.NodeLeftOut():
                 tree.finish(tree.index_of(event.node))
+            case ev.LeafTriedAgain():
+                tree.try_again(tree.index_of(event.node))
             case ev.NodeUndone():
                 tree.take_back(tree.index_of(event.node))
             case ev.NodeReset():

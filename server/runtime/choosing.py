@@ -64,10 +64,14 @@ def able_mask(state: RunState, proxy: RobotProxy, leaves: NDArray[np.int64]) -> 
     return able
 
 
-def choose(state: RunState, proxy: RobotProxy) -> Choice | None:
-    """The leaf that a robot takes next; None if there is none that it can do, or do now."""
+def choose(state: RunState, proxy: RobotProxy, *, held: bool = False) -> Choice | None:
+    """The leaf that a robot takes next; None if there is none that it can do, or do now.
+
+    `held`: of those that wait to be let go, and else only of the others.
+    """
     leaves = state.tree.eligible_leaves()
     able = able_mask(state, proxy, leaves)
+    able &= state.steering.held_mask(leaves, state.taken_back) == held
     able &= _with_company_mask(state, proxy, leaves, able)
     in_place = in_place_mask(state, state.tree, proxy.seen, leaves)
     wanted = able & in_place if (able & in_place).any() else able
@@ -76,6 +80,9 @@ def choose(state: RunState, proxy: RobotProxy) -> Choice | None:
         able, wanted = able & free, wanted & free
     if not wanted.any():
         return None
+    preferred = leaves == state.steering.preferred
+    if (able & preferred).any():
+        wanted = able & preferred
     potentials = potentials_for(state, proxy, leaves)
     leaf = state.tree.choose(leaves, potentials, wanted)
     if leaf is None:
@@ -126,7 +133,9 @@ def _candidates(
     tree = state.tree
     attempts = tree.attempts_of(leaves)
     # Sorting keeps the tree's order, in which the leaves come, where all else is equal.
-    order = np.lexsort((-potentials, attempts, ~in_place))[:MAX_RECORDED_CANDIDATES]
+    others = leaves != state.steering.preferred
+    order = np.lexsort((-potentials, attempts, ~in_place, others))[:MAX_RECORDED_CANDIDATES]
+    asked_for = state.steering.next
     return [
         Candidate(
             node=tree.path_of(leaf),
@@ -135,6 +144,7 @@ def _candidates(
             potential=potential,
             attempts=failed,
             in_place=there,
+            asked_for_by=asked_for[1].by if asked_for and asked_for[0] == leaf else None,
         )
         for leaf, potential, failed, there in zip(
             leaves[order].tolist(),

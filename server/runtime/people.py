@@ -44,6 +44,22 @@ class People:
 
         Raises `NotFoundError`, `WrongInputError`, or `ConflictError` where it cannot be begun now.
         """
+        leaf = self.may_take(node)
+        await self._context.commit([self._taken(leaf, helper, author)])
+
+    async def say_done(
+        self, node: str, helper: str, reason: str, author: ev.Author | None = None
+    ) -> None:
+        """A person says that they have done a leaf: a robot looks, and says what it sees.
+
+        Raises as `take`.
+        """
+        leaf = self.may_take(node)
+        said = {"said_done": True, "reason": reason}
+        await self._context.commit([self._taken(leaf, helper, author).model_copy(update=said)])
+
+    def may_take(self, node: str) -> int:
+        """The leaf that a person may take now. Raises as `take`."""
         state = self._context.state
         leaf = self._leaf(node)
         definition = state.tree.leaf_definition(leaf)
@@ -63,15 +79,17 @@ class People:
                 f"'{name}' cannot be taken now: the robot '{busy}' is at work there, wait until "
                 "its arm rests"
             )
-        taken = ev.NodeTaken(
+        return leaf
+
+    def _taken(self, leaf: int, helper: str, author: ev.Author | None) -> ev.NodeTaken:
+        return ev.NodeTaken(
             **self._context.stamp(),
             **self._reports.node(leaf),
             helper=helper,
             until=self._context.clock.now() + self._context.settings.person_leaf_s,
-            was_at=self._seen_at(definition),
+            was_at=self._seen_at(self._context.state.tree.leaf_definition(leaf)),
             author=author,
         )
-        await self._context.commit([taken])
 
     async def give_back(self, node: str, helper: str) -> None:
         """They do not do it after all. Raises `NotFoundError` or `ConflictError`."""
@@ -134,16 +152,25 @@ class People:
             object=definition.object,
             place=definition.place,
             expect="at_place",
-            within_s=max(0.0, taken.until - self._context.clock.now()),
+            within_s=self._looked_for_s(taken),
             rate=AS_FAST_AS_PEOPLE,
         )
+
+    def _looked_for_s(self, taken: ev.NodeTaken) -> float:
+        left_s = max(0.0, taken.until - self._context.clock.now())
+        return min(left_s, self._context.settings.help_window_s) if taken.said_done else left_s
 
     async def judged(self, proxy: RobotProxy, looked: Looked) -> None:
         """Take what a look says of the results that people were to bring about."""
         awaited = self._awaited()
         done = [awaited[each] for each in looked.there if each in awaited]
-        if done:
-            await self._context.commit([self._done(leaf, proxy) for leaf in done])
+        unseen = [awaited[each] for each in looked.gone if each in awaited]
+        said = self._context.state.people
+        back = [leaf for leaf in unseen if said[leaf].said_done]
+        events: list[ev.Event] = [self._done(leaf, proxy) for leaf in done]
+        events += [self._reset(leaf, _why_not_done(said[leaf])) for leaf in back]
+        if events:
+            await self._context.commit(events)
 
     def _done(self, leaf: int, proxy: RobotProxy) -> ev.NodeDone:
         state = self._context.state
@@ -158,7 +185,7 @@ class People:
             **self._context.stamp(),
             **self._reports.node(leaf),
             robot=proxy.robot,
-            by="found" if was_there else "human",
+            by="found" if was_there and not taken.said_done else "human",
         )
 
     def _seen_at(self, leaf: BehaviorNode) -> tuple[float, float, float] | None:
@@ -185,7 +212,13 @@ class People:
             for leaf, each in self._context.state.people.items()
             if has_come(self._context.clock, each.until)
         ]
-        resets = [self._reset(leaf, f"{each.helper} has not done it in time") for leaf, each in due]
+        resets = [self._reset(leaf, _why_not_done(each)) for leaf, each in due]
         if resets:
             await self._context.commit(resets)
         return bool(resets)
+
+
+def _why_not_done(taken: ev.NodeTaken) -> str:
+    if taken.said_done:
+        return f"{taken.helper} said that it was done, but no robot has seen it at its place"
+    return f"{taken.helper} has not done it in time"

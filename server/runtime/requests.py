@@ -5,6 +5,7 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
+from mend.tasks.autonomy import AutonomyLevel
 from mend.tasks.scenario import Person
 
 MOST = 2**53 - 1
@@ -56,3 +57,4 @@ class RunRequest(BaseModel):
     max_attempts: Annotated[int, Field(ge=1, le=100)] = 3
     world_options: dict[str, WorldOption] = {}
     site: Annotated[UUID | None, Field(strict=False)] = None
+    autonomy: Annotated[AutonomyLevel, Field(strict=False)] = AutonomyLevel.FULL

@@ -47,6 +47,7 @@ from mend.server.runtime.report_events import ReportEvents
 from mend.server.runtime.results import Results, results_of
 from mend.server.runtime.robot_patience import RobotPatience
 from mend.server.runtime.robot_proxy import JUDGING, Purpose, RobotActivity, RobotProxy
+from mend.server.runtime.steering import RunSteering
 from mend.server.runtime.task_allocation import TaskAllocation
 from mend.server.runtime.team import Team
 from mend.server.runtime.views import RunStatus
@@ -79,6 +80,7 @@ class Run:
         self._poses = poses
         self._reports = ReportEvents(context, dialogues)
         self._people = People(context, proxies, self._reports, self._team)
+        self._steering = RunSteering(context, self._reports, self._people)
         self._claims = Claims(context)
         self._interventions = Interventions(context)
         self._inbox = Inbox()
@@ -86,7 +88,13 @@ class Run:
         self._results = Results(context, self._reports, cutting_short)
         self._done_already = DoneAlready(context.state, cutting_short)
         self._allocation = TaskAllocation(
-            context, proxies, self._team, self._people, self._reports, self._results
+            context,
+            proxies,
+            self._team,
+            self._people,
+            self._reports,
+            self._results,
+            self._steering,
         )
         self._presence = RobotPresence(
             context,
@@ -120,6 +128,10 @@ class Run:
     @property
     def people(self) -> People:
         return self._people
+
+    @property
+    def steering(self) -> RunSteering:
+        return self._steering
 
     @property
     def claims(self) -> Claims:

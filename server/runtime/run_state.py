@@ -13,6 +13,7 @@ from mend.server.journal import events as ev
 from mend.server.runtime.dialogue_state import DialogueState
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.run_result import Ending, result_of
+from mend.server.runtime.steering_fold import fold_steering
 from mend.server.runtime.views import RunResult, RunStatus
 from mend.tasks.definition import TaskTreeDefinition
 from mend.tasks.frames import Frame, frames_of
@@ -21,6 +22,7 @@ from mend.tasks.resolution import Resolution
 from mend.tasks.scenario import Scenario
 from mend.tasks.scenario_file import built_in_scenario
 from mend.tasks.scene import Scene
+from mend.tasks.steering import Hold, Steering
 from mend.tasks.task_tree import TaskTree
 
 
@@ -65,6 +67,7 @@ class RunState:
         """Where what stands at a place has its bottom."""
         self.tree = TaskTree(nodes or TaskTreeDefinition.model_validate(started.tree))
         self.tree.running = True
+        self.steering = Steering(self.tree, self.request.autonomy)
         self.status = RunStatus.RUNNING
         self.result: RunResult | None = None
         self.ended: datetime | None = None
@@ -147,6 +150,11 @@ class RunState:
     def open_dialogues(self) -> list[DialogueState]:
         return [each for each in self.dialogues.values() if each.closed is None]
 
+    @property
+    def held(self) -> list[Hold]:
+        """The leaves before which a robot waits to be let go, in tree order."""
+        return [] if self.status.ended else self.steering.waits
+
     def execution_of(self, leaf: int) -> StartedExecution | None:
         """The execution of an active leaf."""
         return next((each for each in self.executions.values() if each.leaf == leaf), None)
@@ -167,9 +175,32 @@ class RunState:
         """Events that leave no trace in the state."""
 
     @_apply.register
+    def _(self, event: ev.AutonomySet | ev.LeafHeld) -> None:
+        fold_steering(self.steering, self.tree, event)
+
+    @_apply.register
+    def _(self, event: ev.SteeringEvent) -> None:
+        fold_steering(self.steering, self.tree, event)
+        self.progress += 1
+
+    @_apply.register
+    def _(self, event: ev.LeafTriedAgain) -> None:
+        leaf = self.tree.index_of(event.node)
+        self.tree.try_again(leaf)
+        self.steering.waiting.pop(leaf, None)
+        self.results = None
+        self.exhausted.discard(leaf)
+        self.left_out.pop(leaf, None)
+        self.to_leave_out.pop(leaf, None)
+        self.times_gone.pop(leaf, None)
+        self.helped_retries.pop(leaf, None)
+        self.progress += 1
+
+    @_apply.register
     def _(self, event: ev.NodeStarted) -> None:
         leaf = self.tree.index_of(event.node)
         self.tree.start(leaf, event.robot)
+        self.steering.begun(leaf)
         self.results = None
         if (handled := self.tree.leaf_definition(leaf).object) is not None:
             self.last_handled[handled] = leaf
@@ -181,6 +212,7 @@ class RunState:
     def _(self, event: ev.NodeTaken) -> None:
         leaf = self.tree.index_of(event.node)
         self.tree.start(leaf, event.helper)
+        self.steering.begun(leaf)
         self.results = None
         if (handled := self.tree.leaf_definition(leaf).object) is not None:
             self.last_handled[handled] = leaf
@@ -275,6 +307,9 @@ class RunState:
     @_apply.register
     def _(self, event: ev.NodeLeftOut) -> None:
         leaf = self.tree.index_of(event.node)
+        if event.robot is None:
+            self.tree.start(leaf, event.helper)
+            self.steering.begun(leaf)
         self._finish(leaf)
         self.left_out[leaf] = event
 

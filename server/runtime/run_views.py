@@ -13,6 +13,7 @@ from mend.server.journal.stored_event import read_event
 from mend.server.runtime.dialogue_state import DialogueState
 from mend.server.runtime.run_result import Ending, result_of
 from mend.server.runtime.run_state import RunState
+from mend.server.runtime.steering_views import BreakpointView, PreferredView, SteeringView
 from mend.server.runtime.views import (
     AwaitedHelp,
     DialogueView,
@@ -24,9 +25,11 @@ from mend.server.runtime.views import (
     RunSummary,
     RunView,
     UnseenHelpView,
+    WaitView,
 )
 from mend.server.turns import Turns
 from mend.tasks.activation import FullEvaluation
+from mend.tasks.steering import Hold
 
 
 def summary(state: RunState, time: float, trouble: str | None) -> RunSummary:
@@ -46,6 +49,49 @@ def summary(state: RunState, time: float, trouble: str | None) -> RunSummary:
         robots=started.robots,
         result=state.result,
         trouble=None if state.status.ended else trouble,
+        waits=waits_of(state),
+    )
+
+
+def waits_of(state: RunState) -> list[WaitView]:
+    """The leaves before which a robot waits to be let go."""
+    return [_wait(state, hold) for hold in state.held]
+
+
+def _wait(state: RunState, hold: Hold) -> WaitView:
+    tree, before = state.tree, hold.breakpoint
+    word = None if before is None else state.steering.breakpoints[before]
+    return WaitView(
+        node=tree.path_of(hold.leaf),
+        name=tree.name_of(hold.leaf),
+        breakpoint=None if before is None else tree.path_of(before),
+        by=None if word is None else word.by,
+        reason="" if word is None else word.reason,
+        level=state.steering.level,
+    )
+
+
+def steering_view(state: RunState) -> SteeringView:
+    """How a run is steered now."""
+    tree, steering = state.tree, state.steering
+    preferred = None
+    if steering.next is not None and steering.preferred is not None:
+        leaf, word = steering.next
+        preferred = PreferredView(
+            node=tree.path_of(leaf), name=tree.name_of(leaf), by=word.by, reason=word.reason
+        )
+    return SteeringView(
+        run=state.id,
+        seq=state.seq,
+        autonomy=steering.level,
+        breakpoints=[
+            BreakpointView(
+                node=tree.path_of(node), name=tree.name_of(node), by=word.by, reason=word.reason
+            )
+            for node, word in sorted(steering.breakpoints.items())
+        ],
+        preferred=preferred,
+        waits=waits_of(state),
     )
 
 

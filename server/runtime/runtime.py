@@ -42,9 +42,11 @@ from mend.server.runtime.run_views import (
     RunViewing,
     dialogue_view,
     robot_view,
+    steering_view,
     summary,
     summary_of_indexed,
 )
+from mend.server.runtime.steering_views import AnySteering, NodeSteeringView, SteeringView
 from mend.server.runtime.views import (
     LeafSaid,
     RobotView,
@@ -399,6 +401,23 @@ class Runtime:
         said = await running.request(lambda: running.people.say(words, helper, author))
         assert isinstance(said, LeafSaid), "it is what was asked for"
         return said
+
+    async def steer(
+        self, run: UUID, wish: AnySteering, by: str, author: ev.Author | None = None
+    ) -> SteeringView:
+        """Steer a run. Raises as `RunSteering.steer`."""
+        running = await self._running(run)
+        await running.request(lambda: running.steering.steer(wish, by, author))
+        return steering_view(running.context.state)
+
+    async def steering(self, run: UUID) -> SteeringView:
+        """How a run is steered. Raises `NotFoundError` or `UnreadableError`."""
+        return steering_view(await self._states.find(run))
+
+    async def steering_of(self, run: UUID, node: str) -> NodeSteeringView:
+        """What may be said of a node now. Raises `NotFoundError`, or `ConflictError` at its end."""
+        running = await self._running(run)
+        return running.steering.offers(node)
 
     async def intervene(
         self, run: UUID, intervention: Intervention, author: ev.Author | None = None

@@ -14,6 +14,7 @@ from mend.server.journal.events import (
 )
 from mend.server.journal.run_index import RunPage
 from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.steering_views import AnySteering, NodeSteeringView, SteeringView
 from mend.server.runtime.views import (
     ChosenView,
     DialogueView,
@@ -170,6 +171,20 @@ class RunService(Protocol):
         self, run: UUID, words: str, helper: str, author: Author | None = None
     ) -> LeafSaid:
         """Either of these in plain words. Raises `WrongInputError` if they are not understood."""
+        ...
+
+    async def steer(
+        self, run: UUID, wish: AnySteering, by: str, author: Author | None = None
+    ) -> SteeringView:
+        """Steer a run. Raises `ConflictError` where that would break its tree's order."""
+        ...
+
+    async def steering(self, run: UUID) -> SteeringView:
+        """How a run is steered."""
+        ...
+
+    async def steering_of(self, run: UUID, node: str) -> NodeSteeringView:
+        """What may be said of a node of a run now."""
         ...
 
     async def intervene(

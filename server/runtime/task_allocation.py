@@ -2,15 +2,18 @@
 
 from uuid import uuid4
 
+import numpy as np
+
 from mend.robots.link.messages import Location, WasDone
 from mend.server.journal import events as ev
-from mend.server.runtime.choosing import choose
+from mend.server.runtime.choosing import able_mask, choose
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.people import People
 from mend.server.runtime.report_events import ReportEvents
 from mend.server.runtime.results import Results, missing_parts, results_of, unseen_parts
 from mend.server.runtime.robot_proxy import Purpose, RobotActivity, RobotProxy
 from mend.server.runtime.run_state import StartedExecution
+from mend.server.runtime.steering import RunSteering
 from mend.server.runtime.team import Team
 
 
@@ -25,10 +28,12 @@ class TaskAllocation:
         people: People,
         reports: ReportEvents,
         results: Results,
+        steering: RunSteering,
     ) -> None:
         self._context, self._proxies = context, proxies
         self._team, self._people = team, people
         self._reports, self._results = reports, results
+        self._steering = steering
         self._looked_last: set[str] = set()
         """The robots that have looked since the task was done."""
 
@@ -73,6 +78,8 @@ class TaskAllocation:
         state = self._context.state
         choice = choose(state, proxy)
         if choice is None:
+            if self._waits_for_a_word(proxy):
+                return await self._wait_for_a_word(proxy)
             if proxy.area is not None:
                 # Nothing that it could do is free: it is not to be in the way of others meanwhile.
                 proxy.retreat()
@@ -100,6 +107,27 @@ class TaskAllocation:
             return True
         await self._context.commit([started])
         self.start(proxy, execution)
+        return True
+
+    def _waits_for_a_word(self, proxy: RobotProxy) -> bool:
+        """Whether it is to say that it waits before a leaf to be let go."""
+        state = self._context.state
+        told = np.array([each.leaf for each in state.held], dtype=np.int64)
+        if able_mask(state, proxy, told).any():
+            return False
+        return choose(state, proxy, held=True) is not None
+
+    async def _wait_for_a_word(self, proxy: RobotProxy) -> bool:
+        """Say before which leaf it waits, once it has looked: it is the one that it would begin."""
+        if not proxy.looked_just_now(self._context.clock.now()):
+            proxy.look(Purpose.CHOOSE)
+            return False
+        state = self._context.state
+        choice = choose(state, proxy, held=True)
+        assert choice is not None, "it was found just now"
+        hold = state.steering.hold_on(choice.leaf, state.taken_back)
+        assert hold is not None, "only what is held was chosen from"
+        await self._context.commit([self._steering.held(hold, proxy.robot)])
         return True
 
     def start(self, proxy: RobotProxy, execution: StartedExecution) -> None:

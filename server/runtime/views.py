@@ -17,6 +17,7 @@ from mend.server.journal.events import (
     WayOption,
 )
 from mend.server.runtime.leaf_words import LeafDeed
+from mend.tasks.autonomy import AutonomyLevel
 
 
 class View(BaseModel):
@@ -195,6 +196,21 @@ class LeafSaid(View):
     name: str
 
 
+class WaitView(View):
+    """A leaf before which a robot waits to be let go.
+
+    `breakpoint`: the node before which somebody set one, `by` whom and why; None where the run's
+    `level` of autonomy asks for it.
+    """
+
+    node: str
+    name: str
+    breakpoint: str | None
+    by: str | None
+    reason: str
+    level: AutonomyLevel
+
+
 class RunSummary(View):
     """One line about a run."""
 
@@ -212,6 +228,8 @@ class RunSummary(View):
     result: RunResult | None
     trouble: str | None = None
     """Why the run goes no further for now: the journal cannot be written."""
+    waits: list[WaitView] = []
+    """The leaves before which a robot waits to be let go."""
 
 
 class RunView(RunSummary):

@@ -5,7 +5,7 @@ so that it can find fault with both the tree and the runtime.
 """
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from uuid import UUID
 
 from mend.server.journal import events as ev
@@ -32,6 +32,7 @@ class _Reader:
         self._said_last: dict[str, str] = {}
         self._open: dict[UUID, str] = {}
         self._answered: Counter[UUID] = Counter()
+        self._word = _Word()
         self._broken: list[str] = []
         self._ended: str | None = None
 
@@ -52,7 +53,14 @@ class _Reader:
         self._broken.append(f"event {event.seq} ({getattr(event, 'type', '?')}) {sentence}")
 
     def _take(self, event: ev.Event) -> None:
+        self._word.take(event)
         match event:
+            case ev.LeafTriedAgain():
+                self._try_again(event)
+            case ev.NodeLeftOut(robot=None):
+                self._begin(event, event.helper)
+                self._said_last[event.node] = event.helper
+                self._leave_out(event)
             case ev.NodeStarted():
                 self._started(event)
             case ev.NodeTaken():
@@ -115,6 +123,19 @@ class _Reader:
         self._done.discard(event.node)
         self._left_out.pop(event.node, None)
 
+    def _try_again(self, event: ev.LeafTriedAgain) -> None:
+        node = event.node
+        if node in self._active:
+            self._breach(event, f"has {node} tried again, which is active")
+        if node in self._done and node not in self._left_out:
+            self._breach(event, f"has {node} tried again, which is done")
+        for later in self._after(node):
+            if self._is_touched(later):
+                self._breach(event, f"has {node} tried again after {later} has begun")
+        self._done.discard(node)
+        self._left_out.pop(node, None)
+        self._abandoned -= {each for each in self._abandoned if _is_at_or_under(node, each)}
+
     def _after(self, node: str) -> list[str]:
         """The nodes that a THEN puts after one, as children of THENs above it."""
         found, child = [], node
@@ -145,9 +166,12 @@ class _Reader:
     def _started(self, event: ev.NodeStarted) -> None:
         if event.robot in self._active.values():
             self._breach(event, f"gives {event.robot} a second leaf")
+        for why in self._word.against(event, self._is_touched):
+            self._breach(event, f"starts {event.node}, though {why}")
+        self._word.begun(event.node)
         self._begin(event, event.robot)
 
-    def _begin(self, event: ev.NodeStarted | ev.NodeTaken, owner: str) -> None:
+    def _begin(self, event: ev.NodeStarted | ev.NodeTaken | ev.NodeLeftOut, owner: str) -> None:
         node = event.node
         if node in self._done or node in self._active:
             self._breach(event, f"starts {node}, which is active or done")
@@ -165,7 +189,10 @@ class _Reader:
         self._active[node] = owner
 
     def _check_siblings(
-        self, event: ev.NodeStarted | ev.NodeTaken, parent: str, child: str
+        self,
+        event: ev.NodeStarted | ev.NodeTaken | ev.NodeLeftOut,
+        parent: str,
+        child: str,
     ) -> None:
         siblings = self._children[parent]
         if self._kinds[parent] == "then":
@@ -194,6 +221,48 @@ class _Reader:
             return node in self._done
         children = (self._is_done(each) for each in self._children[node])
         return any(children) if kind == "or" else all(children)
+
+
+class _Word:
+    """What people have said of a run: where it is to wait, and how much it may do alone."""
+
+    def __init__(self) -> None:
+        self._level = "full"
+        self._breakpoints: set[str] = set()
+        self._let_go: set[str] = set()
+
+    def take(self, event: ev.Event) -> None:
+        match event:
+            case ev.RunStarted():
+                self._level = str(event.options.get("autonomy", "full"))
+            case ev.AutonomySet():
+                self._level = str(event.level)
+            case ev.BreakpointSet():
+                self._breakpoints.add(event.node)
+                self._let_go -= {n for n in self._let_go if _is_at_or_under(n, event.node)}
+            case ev.BreakpointRemoved():
+                self._breakpoints.discard(event.node)
+            case ev.LeafLetGo():
+                self._let_go.add(event.node)
+            case ev.NodeTaken() | ev.NodeLeftOut(robot=None):
+                self.begun(event.node)
+
+    def begun(self, node: str) -> None:
+        self._let_go.discard(node)
+
+    def against(self, event: ev.NodeStarted, is_touched: Callable[[str], bool]) -> Iterator[str]:
+        """Why a robot must not begin a leaf by itself."""
+        if event.node in self._let_go:
+            return
+        for each in self._breakpoints:
+            if _is_at_or_under(event.node, each) and not is_touched(each):
+                yield f"there is a breakpoint before {each}"
+        if self._level == "off" or (self._level == "low" and event.attempt > 1):
+            yield f"with autonomy {self._level} it has to ask"
+
+
+def _is_at_or_under(node: str, top: str) -> bool:
+    return node == top or node.startswith(top.rstrip("/") + "/")
 
 
 def _parent(path: str) -> str:

@@ -10,7 +10,7 @@ from console_in_browser import OpenPage
 from office_with_fleet import open_office_with_fleet
 from playwright.async_api import Page, expect
 from recorded_service import recorded_events
-from two_boxes import BENCH, BOTH
+from two_boxes import BENCH, BLUE, BOTH, RED
 
 from mend.fleet.requests import DeliverMessage, GoToRoom, Transport
 from mend.maps.building.building import Building
@@ -20,8 +20,10 @@ from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.journal.journal import Entry
 from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.steering_views import SteerNode
 from mend.server.sites.requests import SiteRequest
 from mend.sim.building.scene import scene_of
+from mend.tasks.autonomy import AutonomyLevel
 from mend.tasks.intervention import Intervention
 from mend.tasks.scenario import Person
 
@@ -204,6 +206,31 @@ async def taken_leaf(service: Service, open_page: OpenPage) -> Page:
         await page.get_by_role("button", name="Say it").click()
     await expect(page.get_by_text("'red_box' cannot be taken now")).to_be_visible()
     await expect(page.get_by_text("You are doing blue box")).to_be_visible()
+    return page
+
+
+async def begin_steered(service: Service) -> UUID:
+    """Start a run of two boxes whose robot begins nothing by itself."""
+    await service.library.scenes.save("small_bench", BENCH)
+    await service.library.trees.save("both", BOTH)
+    request = RunRequest(
+        tree="both", world="tabletop", speed="max", seed=2, autonomy=AutonomyLevel.OFF
+    )
+    return (await service.runtime.start_run(request)).id
+
+
+async def steered_run(service: Service, open_page: OpenPage) -> Page:
+    """A robot waits at a breakpoint, and what may be said of that node is open."""
+    run = await begin_steered(service)
+    for act, node in (("set_breakpoint", BLUE), ("go_on", RED)):
+        said = {"act": act, "node": node, "reason": "the glue is still wet"}
+        await service.runtime.steer(run, SteerNode.model_validate(said), "bert")
+    page = await open_page(f"/runs/{run}")
+    await expect(page.get_by_role("button", name="Go on: blue box")).to_be_visible(
+        timeout=PATIENCE_MS
+    )
+    await page.get_by_role("treeitem", name="blue box").click()
+    await page.get_by_text("What cannot be said now").click()
     return page
 
 
@@ -417,6 +444,7 @@ SITUATIONS: dict[str, Situation] = {
         live_run,
         run_in_building,
         taken_leaf,
+        steered_run,
         finished_run,
         past_of_run,
         plotted_run,

@@ -17,6 +17,12 @@ from mend.server.journal.run_index import RunPage
 from mend.server.runtime.leaf_words import understood
 from mend.server.runtime.question_queue import OpenQuestion, batches_of
 from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.steering_views import (
+    AnySteering,
+    NodeSteeringView,
+    SteeringView,
+    SteerNode,
+)
 from mend.server.runtime.views import (
     AwaitedHelp,
     ChosenView,
@@ -34,6 +40,7 @@ from mend.server.runtime.views import (
     Snapshot,
     WorldView,
 )
+from mend.tasks.autonomy import AutonomyLevel
 from mend.tasks.intervention import Intervention
 
 TREES = {"eket": "then: []", "tea_table": "and: []"}
@@ -212,6 +219,33 @@ class FakeRuns:
         said = understood(words)
         await self.take_leaf(run, "/0", helper, author)
         return LeafSaid(deed=said.deed, node="/0", name=said.part)
+
+    async def steer(
+        self, run: UUID, wish: AnySteering, by: str, author: ev.Author | None = None
+    ) -> SteeringView:
+        """Only breakpoints, as many as there are."""
+        self._expect(run, RunStatus.RUNNING, RunStatus.PAUSED)
+        if isinstance(wish, SteerNode):
+            await self.commit(
+                ev.BreakpointSet(
+                    **_stamp(run), node=wish.node, name=wish.node, by=by, author=author
+                )
+            )
+        return await self.steering(run)
+
+    async def steering(self, run: UUID) -> SteeringView:
+        return SteeringView(
+            run=self.run_now(run).id,
+            seq=0,
+            autonomy=AutonomyLevel.FULL,
+            breakpoints=[],
+            preferred=None,
+            waits=[],
+        )
+
+    async def steering_of(self, run: UUID, node: str) -> NodeSteeringView:
+        found = self.run_now(run).id
+        return NodeSteeringView(run=found, node=node, name=node, seq=0, offered=[], refused=[])
 
     async def intervene(
         self, run: UUID, intervention: Intervention, author: ev.Author | None = None

@@ -2,9 +2,9 @@
 
     python tests/doubles/folded_runs.py [SEED ...]
 
-One line of JSON per run: `events` with their lines, and as many `states` with the nodes, status
-and open dialogues. Leaf potentials are those of the last choice in which the leaf was a candidate:
-what a robot has seen since then is in no event.
+One line of JSON per run: `events` with their lines, and as many `states` with the nodes, status,
+open dialogues and how the run is steered. Leaf potentials are those of the last choice in which the
+leaf was a candidate: what a robot has seen since then is in no event.
 """
 
 # ruff: noqa: T201
@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from random_task import random_task
 from recorded_service import recorded_events
+from steered_events import steered_events
 
 from mend.dialogue.registry import load_scripts
 from mend.server.composition import open_service
@@ -27,11 +28,12 @@ from mend.server.journal import events as ev
 from mend.server.journal.sqlite import IN_MEMORY
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.run_state import RunState
-from mend.server.runtime.run_views import RunViewing, dialogue_view
+from mend.server.runtime.run_views import RunViewing, dialogue_view, steering_view
 from mend.server.settings import Settings
 from mend.server.transcript import Transcript
 from mend.tasks.scenario import Person
 
+STEERED_SEED = 23
 LEAVES = 12
 PAUSED_EVERY = 7
 
@@ -97,14 +99,19 @@ def states(events: Sequence[ev.Event]) -> list[dict[str, Any]]:
                     )
                     for each in state.open_dialogues
                 ],
+                "steering": steering_view(state).model_dump(mode="json", exclude={"run", "seq"}),
             }
         )
     return said
 
 
 def main() -> None:
-    """Print the recorded run of the paper's scenario, then one for each seed."""
-    runs = [recorded_events(), *(asyncio.run(random_events(int(each))) for each in sys.argv[1:])]
+    """Print the recorded run of the paper's scenario, one that is steered, and one a seed."""
+    runs = [
+        recorded_events(),
+        steered_events(STEERED_SEED),
+        *(asyncio.run(random_events(int(each))) for each in sys.argv[1:]),
+    ]
     for events in runs:
         transcript = Transcript()
         told = [

@@ -11,13 +11,14 @@ from recorded_service import recorded_events
 from sample_events import detected, paused
 from service_under_test import TOKEN, ServiceUnderTest, build, serving
 
-from mend.server.client import IDLE_S, MendClient
+from mend.server.client import MendClient
 from mend.server.client_errors import (
     CommandRefusedError,
     RefusedError,
     StreamRefusedError,
     UnreachableError,
 )
+from mend.server.client_wire import IDLE_S
 from mend.server.journal.events import Answered, Event, RunAborted, RunStarted
 from mend.server.journal.journal import Entry
 from mend.server.runtime.requests import RunRequest

@@ -39,11 +39,22 @@ OF_NO_RUN = {
     "site_opened",
     "site_restarted",
 }
+OF_STEERING = {
+    "autonomy_set",
+    "breakpoint_removed",
+    "breakpoint_set",
+    "leaf_held",
+    "leaf_let_go",
+    "leaf_not_preferred",
+    "leaf_preferred",
+    "leaf_tried_again",
+}
 OF_PROMISES = {"help_not_seen_yet", "help_reported", "promise_taken_back"}
 ADDED_SINCE: dict[str, set[str]] = {
     "v1": {
         *OF_NO_RUN,
         *OF_PROMISES,
+        *OF_STEERING,
         "clip_recorded",
         "deadline_extended",
         "first_look",
@@ -58,17 +69,18 @@ ADDED_SINCE: dict[str, set[str]] = {
     "v2": {
         *OF_NO_RUN,
         *OF_PROMISES,
+        *OF_STEERING,
         "node_taken",
         "first_look",
         "looked_anew",
         "suspected_false_alarm",
         "way_found",
     },
-    "v3": {*OF_NO_RUN, *OF_PROMISES, "node_taken", "looked_anew", "way_found"},
-    "v4": {*OF_NO_RUN, *OF_PROMISES, "node_taken", "looked_anew", "way_found"},
-    "v5": {*OF_NO_RUN, *OF_PROMISES, "node_taken", "looked_anew", "way_found"},
-    "v6": {*OF_NO_RUN},
-    "v7": {*OF_NO_RUN},
+    "v3": {*OF_NO_RUN, *OF_PROMISES, *OF_STEERING, "node_taken", "looked_anew", "way_found"},
+    "v4": {*OF_NO_RUN, *OF_PROMISES, *OF_STEERING, "node_taken", "looked_anew", "way_found"},
+    "v5": {*OF_NO_RUN, *OF_PROMISES, *OF_STEERING, "node_taken", "looked_anew", "way_found"},
+    "v6": {*OF_NO_RUN, *OF_STEERING},
+    "v7": {*OF_NO_RUN, *OF_STEERING},
 }
 """The types of events that came after a sample was written."""
 

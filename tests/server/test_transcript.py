@@ -15,6 +15,7 @@ from mend.server.journal import events as ev
 from mend.server.transcript import Transcript
 from mend.server.transcript_line import Line, Tone, grouped
 from mend.server.transcript_words import finished_text, told_missing
+from mend.tasks.autonomy import AutonomyLevel
 from mend.tasks.intervention import Act, Intervention
 from mend.tasks.resolution import Resolution
 from mend.tasks.scene import Pose
@@ -297,6 +298,29 @@ def test_who_paused_or_aborted_a_run_is_told_by_name() -> None:
     assert told(ev.RunResumed(**EVENT, author=nameless)) == ["the run goes on"]
     assert told(ev.RunAborted(**EVENT, author=olga)) == ["the run was aborted: by olga"]
     assert told(ev.RunAborted(**EVENT, author=nameless)) == ["the run was aborted: by a person"]
+
+
+def test_who_steers_a_run_and_why_is_told() -> None:
+    said = {**NODE, "by": "ann", "reason": "the glue is wet"}
+    assert told(ev.BreakpointSet(**said)) == [
+        "ann sets a breakpoint before pink_bar (the glue is wet)"
+    ]
+    assert told(ev.LeafLetGo(**{**said, "reason": ""})) == ["ann lets pink_bar go on"]
+    assert told(ev.AutonomySet(**EVENT, level=AutonomyLevel.LOW, by="ann")) == [
+        "ann sets the autonomy to low"
+    ]
+    left = ev.NodeLeftOut(**NODE, robot=None, helper="ann", reason="it is broken")
+    assert told(left) == ["pink_bar is left out, as ann said (it is broken)"]
+
+
+def test_before_what_a_robot_waits_is_told_with_who_wanted_it() -> None:
+    held = {**NODE, "robot": "pr2", "level": AutonomyLevel.LOW}
+    assert told(ev.LeafHeld(**held, breakpoint="/1", by="ann")) == [
+        "robot waits before pink_bar: breakpoint set by ann"
+    ]
+    assert told(ev.LeafHeld(**held, breakpoint=None)) == [
+        "robot waits before pink_bar: with autonomy low it asks first"
+    ]
 
 
 def test_every_event_type_has_a_line_of_its_own_or_is_told_by_others() -> None:

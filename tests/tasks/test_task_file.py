@@ -10,6 +10,7 @@ from sampled import sample
 from trees import BEHAVIORS
 
 from mend.documents.problem import InvalidFileError
+from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
 from mend.tasks.draft import MAX_NODE_DEPTH
 from mend.tasks.library import SCENES, TREES, NotInLibraryError, Shelf
 from mend.tasks.scene_file import built_in_scene
@@ -255,3 +256,34 @@ def test_the_library_tells_what_it_has() -> None:
     with pytest.raises(NotInLibraryError):
         TREES.read("../scenes/eket")
     assert Shelf("nowhere", "nothing").names() == []
+
+
+def test_a_leaf_says_what_autonomy_it_needs() -> None:
+    text = """
+name: careful
+tree:
+  and:
+    - {behavior: pick_and_place, object: cup, place: left}
+    - {behavior: pick_and_place, object: jug, place: right, autonomy: full}
+"""
+    checked = check_task_text(text, BEHAVIORS)
+    leaves = [each for each in checked.definition.nodes if isinstance(each, BehaviorNode)]
+    assert [each.autonomy for each in leaves] == ["off", "full"]
+    assert leaves[1].parameters == {"object": "jug", "place": "right", "needs_help": False}
+    kept = checked.definition.to_json()
+    assert ["autonomy" in each for each in kept["nodes"]] == [False, False, True]
+    tree = TaskTree(TaskTreeDefinition.model_validate(kept))
+    assert [str(tree.nodes.autonomy_of(leaf)) for leaf in tree.leaves] == ["off", "full"]
+
+
+def test_an_autonomy_that_there_is_not_is_a_mistake_in_its_line() -> None:
+    text = """
+name: careful
+tree:
+  and:
+    - behavior: pick_and_place
+      object: cup
+      place: left
+      autonomy: some
+"""
+    assert problems(text) == [(8, "/0", "'autonomy' must be low, high or full, but it is \"some\"")]

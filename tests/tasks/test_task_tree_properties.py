@@ -27,6 +27,7 @@ class TreeAgainstFullEvaluation(RuleBasedStateMachine):
         self.plain = list(root.walk())
         self.tree = TaskTree(define(root))
         self.tree.running = True
+        self.given_up: list[Node] = []
 
     def pick(self, data: st.DataObject, status: str) -> int:
         found = [i for i in self.tree.leaves if self.plain[i].status == status]
@@ -110,6 +111,22 @@ class TreeAgainstFullEvaluation(RuleBasedStateMachine):
         self.tree.abandon(give_up.alternative)
         for node in under:
             node.given_up = True
+        self.given_up.append(self.plain[give_up.alternative])
+
+    @rule(data=st.data())
+    def try_again(self, data: st.DataObject) -> None:
+        leaf = data.draw(st.sampled_from(list(self.tree.leaves)))
+        plain = self.plain[leaf]
+        if plain.status == "active" or (plain.status == "done" and self.put_after(leaf)):
+            with pytest.raises(IllegalTransitionError):
+                self.tree.try_again(leaf)
+            return
+        self.tree.try_again(leaf)
+        plain.status, plain.attempts = "idle", 0
+        self.given_up = [each for each in self.given_up if plain not in list(each.walk())]
+        given_up = {node for each in self.given_up for node in each.walk()}
+        for node in self.plain:
+            node.given_up = node in given_up
 
     @precondition(lambda self: self.some("done"))
     @rule(data=st.data(), read_between=st.booleans())

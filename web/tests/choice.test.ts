@@ -3,7 +3,7 @@ import { whyChosen } from "../src/run/choice";
 import type { Candidate, NodeStarted } from "../src/wire/types";
 
 function candidate(name: string, potential: number, attempts = 0): Candidate {
-  return { node: `/${name}`, name, level: 1, potential, attempts, in_place: false };
+  return { node: `/${name}`, name, level: 1, potential, attempts, in_place: false, asked_for_by: null };
 }
 
 function choice(...candidates: [Candidate, ...Candidate[]]): NodeStarted {

@@ -19,6 +19,6 @@ describe("the request for a run", () => {
 
   it("leaves to a site what the site says", () => {
     const there = request(settled({ ...filled, site: "1a2b3c4d" }, CHOICES));
-    expect(there).toEqual({ tree: "kit", site: "1a2b3c4d", max_attempts: 3, answers: "live" });
+    expect(there).toEqual({ tree: "kit", site: "1a2b3c4d", max_attempts: 3, answers: "live", autonomy: "full" });
   });
 });

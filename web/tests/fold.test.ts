@@ -2,6 +2,7 @@
 import { beforeAll, describe, expect, it } from "vitest";
 import { awaiting, nodeViews, type RunState } from "../src/run/fold";
 import { createHistory } from "../src/run/history";
+import { hasItsTurn, waitsOf } from "../src/run/steering/waits";
 import type { Told } from "../src/wire/told";
 import { type FoldedRun, foldedRuns, type Said } from "./folded_runs.mjs";
 
@@ -25,7 +26,26 @@ function said(state: RunState): Said {
       awaiting: awaiting(dialogue),
       claimed_by: dialogue.claimedBy,
     })),
+    steering: steered(state),
   };
+}
+
+/** As the service's view of a run's steering has it. */
+function steered(state: RunState): Said["steering"] {
+  const { autonomy, breakpoints, preferred } = state.steering;
+  const views = new Map(nodeViews({ ...state, status: "running" }).map((view) => [view.node, view]));
+  const told = ({ node, name, by, reason }: { node: string; name: string; by: string; reason: string }) => ({ node, name, by, reason });
+  const turn = preferred === null ? undefined : views.get(preferred.node);
+  return {
+    autonomy,
+    breakpoints: [...breakpoints.values()].map(told).toSorted((one, other) => (orderOf(state, one.node) - orderOf(state, other.node))),
+    preferred: preferred !== null && turn !== undefined && hasItsTurn(turn) ? told(preferred) : null,
+    waits: waitsOf(state).map(({ node, name, breakpoint, by, reason, level }) => ({ node, name, breakpoint, by, reason, level })),
+  };
+}
+
+function orderOf({ shape }: RunState, node: string): number {
+  return shape.indices.get(node) ?? -1;
 }
 
 /** Of a finished run the console says what its transcript does. */
@@ -37,7 +57,7 @@ function asTold(said: Said): Said {
 
 describe("fold", () => {
   it("says the same as the service after every event of every run", () => {
-    expect(runs).toHaveLength(SEEDS.length + 1);
+    expect(runs).toHaveLength(SEEDS.length + 2);
     for (const { events, states } of runs) {
       const history = createHistory();
       history.add(events);
@@ -58,6 +78,16 @@ describe("fold", () => {
       "run_finished",
       "help_verified",
       "help_not_seen",
+      "breakpoint_set",
+      "breakpoint_removed",
+      "autonomy_set",
+      "leaf_held",
+      "leaf_let_go",
+      "leaf_preferred",
+      "leaf_not_preferred",
+      "leaf_tried_again",
+      "node_left_out",
+      "node_taken",
     ]) {
       expect(types).toContain(type);
     }

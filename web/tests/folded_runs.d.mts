@@ -1,5 +1,5 @@
 import type { Told } from "../src/wire/told";
-import type { DialogueView, NodeView, RunResult, RunStatus } from "../src/wire/types";
+import type { DialogueView, NodeView, RunResult, RunStatus, SteeringView } from "../src/wire/types";
 
 /** What the service says of a run after one of its events. */
 export interface Said {
@@ -7,6 +7,7 @@ export interface Said {
   result: RunResult | null;
   nodes: NodeView[];
   dialogues: Pick<DialogueView, "dialogue" | "node" | "awaiting" | "claimed_by">[];
+  steering: Omit<SteeringView, "run" | "seq">;
 }
 
 /** A run's events, and as many states. */

@@ -10,7 +10,7 @@ function run(id: string, status: RunStatus, hoursAgo = 1): RunSummary {
   const ended = status === "running" || status === "paused" ? null : new Date(NOW - hoursAgo * HOUR_MS).toISOString();
   return {
     id, status, ended, tree: "tea_table", world: "workcell", scenario: null, seed: 1, speed: 1, time: 3,
-    started: new Date(NOW - 30 * HOUR_MS).toISOString(), robots: [], result: null, trouble: null,
+    started: new Date(NOW - 30 * HOUR_MS).toISOString(), robots: [], result: null, trouble: null, waits: [],
   };
 }
 
@@ -61,6 +61,13 @@ describe("the page where nothing is asked", () => {
     const runs = [run("a", "running")];
     expect(glance({ runs, robots: [robot("lost", "a")] })).toMatchObject({ sign: "bad", lost: [{ robot: "ada" }] });
     expect(glance({ runs, robots: [robot("lost", null), robot("working", "a")] }).sign).toBe("well");
+  });
+
+  it("is not well while a run waits to be let go", () => {
+    const wait = { node: "/0", name: "top", breakpoint: "/0", by: "ann", reason: "", level: "full" } as const;
+    const told = glance({ runs: [{ ...run("a", "running"), waits: [wait] }] });
+    expect(told).toMatchObject({ sign: "bad", words: "No robot asks anything, but one waits to be let go." });
+    expect(glance({ runs: [{ ...run("a", "aborted"), waits: [wait] }] }).sign).toBe("idle");
   });
 
   it("is not well while the service cannot keep what happens", () => {

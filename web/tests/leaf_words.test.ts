@@ -11,6 +11,7 @@ import type { NodeTaken, NodeView, RunStarted } from "../src/wire/types";
 const LEAF = { kind: "behavior", behavior: "pick_and_place", parent: 0 } as const;
 const STARTED = {
   type: "run_started",
+  options: {},
   seq: 1,
   time: 0,
   robots: ["pr2-1"],

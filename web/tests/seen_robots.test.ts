@@ -18,7 +18,7 @@ const leaves = ["F1-101", "F2-204"].map((place, index) => ({
   parameters: { place },
 }));
 const tree = { name: "rounds", nodes: [{ name: "all", kind: "and", parent: null }, ...leaves] };
-const started = { type: "run_started", seq: 1, time: 0, robots: [ONE, TWO], scene: OFFICE, tree } as unknown as RunStarted;
+const started = { type: "run_started", seq: 1, time: 0, robots: [ONE, TWO], scene: OFFICE, tree, options: {} } as unknown as RunStarted;
 
 const drives = (node: string, held = false): Execution => ({ id: node, node, name: "go_to_2", step: 1, stepName: "", held });
 

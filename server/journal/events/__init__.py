@@ -103,6 +103,17 @@ from mend.server.journal.events.site_events import (
     SiteOpened,
     SiteRestarted,
 )
+from mend.server.journal.events.steering_events import (
+    AutonomySet,
+    BreakpointRemoved,
+    BreakpointSet,
+    LeafHeld,
+    LeafLetGo,
+    LeafNotPreferred,
+    LeafPreferred,
+    LeafTriedAgain,
+    SteeringEvent,
+)
 
 __all__ = [
     "NO_RUN",
@@ -112,6 +123,9 @@ __all__ = [
     "Answered",
     "AnyEvent",
     "Author",
+    "AutonomySet",
+    "BreakpointRemoved",
+    "BreakpointSet",
     "Candidate",
     "Claimed",
     "ClipPicture",
@@ -139,6 +153,11 @@ __all__ = [
     "InterventionAccepted",
     "InterventionDone",
     "IssueRaised",
+    "LeafHeld",
+    "LeafLetGo",
+    "LeafNotPreferred",
+    "LeafPreferred",
+    "LeafTriedAgain",
     "LegBegun",
     "LegEnded",
     "LegEvent",
@@ -182,6 +201,7 @@ __all__ = [
     "SiteGivenBack",
     "SiteOpened",
     "SiteRestarted",
+    "SteeringEvent",
     "StepStarted",
     "SuspectedFalseAlarm",
     "UnseenHelp",

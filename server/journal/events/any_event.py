@@ -79,6 +79,16 @@ from mend.server.journal.events.site_events import (
     SiteOpened,
     SiteRestarted,
 )
+from mend.server.journal.events.steering_events import (
+    AutonomySet,
+    BreakpointRemoved,
+    BreakpointSet,
+    LeafHeld,
+    LeafLetGo,
+    LeafNotPreferred,
+    LeafPreferred,
+    LeafTriedAgain,
+)
 
 AnyEvent = Annotated[
     RunStarted
@@ -113,6 +123,14 @@ AnyEvent = Annotated[
     | NodeUndone
     | NodeAbandoned
     | SuspectedFalseAlarm
+    | AutonomySet
+    | BreakpointRemoved
+    | BreakpointSet
+    | LeafHeld
+    | LeafLetGo
+    | LeafNotPreferred
+    | LeafPreferred
+    | LeafTriedAgain
     | RunPaused
     | RunResumed
     | RunFinished

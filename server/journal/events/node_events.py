@@ -12,7 +12,7 @@ class Candidate(EventModel):
     """One leaf that could have been started, and why it was or was not.
 
     `in_place`: another alternative would do as well, but what this one handles is at its place
-    already.
+    already. `asked_for_by`: who asked for it to be begun next.
     """
 
     node: str
@@ -21,6 +21,7 @@ class Candidate(EventModel):
     potential: float
     attempts: int
     in_place: bool = False
+    asked_for_by: str | None = None
 
 
 class NodeStarted(NodeEvent):
@@ -41,6 +42,7 @@ class NodeTaken(NodeEvent):
     """A person does a leaf themselves, until (the run's clock) it is given back.
 
     `was_at`: where a robot saw its object last (the scene's frame, metres), None if none had.
+    `said_done`: they say that they have done it already, for a `reason`; a robot has to see it.
     """
 
     type: Literal["node_taken"] = "node_taken"
@@ -48,6 +50,8 @@ class NodeTaken(NodeEvent):
     until: float
     was_at: tuple[float, float, float] | None
     author: Author | None = None
+    said_done: bool = False
+    reason: str = ""
 
 
 class StepStarted(NodeEvent):
@@ -134,11 +138,16 @@ class NodeReset(NodeEvent):
 
 
 class NodeLeftOut(NodeEvent):
-    """A helper told the robot to leave a leaf out; for the order of the tree it is done."""
+    """A helper said to leave a leaf out; for the order of the tree it is done.
+
+    `robot`: which one asked; None where nobody did, and somebody steered the run so for a `reason`.
+    """
 
     type: Literal["node_left_out"] = "node_left_out"
-    robot: str
+    robot: str | None
     helper: str
+    reason: str = ""
+    author: Author | None = None
 
 
 class NodeReturned(NodeEvent):

@@ -15,6 +15,8 @@ export interface Glance {
   readonly failures: readonly RunSummary[];
   /** Robots that runs wait for. */
   readonly lost: readonly RobotView[];
+  /** Runs that wait to be let go. */
+  readonly waiting: readonly RunSummary[];
 }
 
 export interface Seen {
@@ -33,7 +35,7 @@ export interface Seen {
 export function glanceOf({ connection, trouble, runs, robots, ofFleets, known, now }: Seen): Glance {
   if (connection !== "connected" || runs === null) {
     const more = connection === "connected" ? "Reading what the runs do." : "Questions may wait that are not seen here.";
-    return { sign: "unknown", words: "Not known whether a robot asks anything.", more, failures: [], lost: [] };
+    return { sign: "unknown", words: "Not known whether a robot asks anything.", more, failures: [], lost: [], waiting: [] };
   }
   const goingOn = runs.filter(({ status }) => status === "running" || status === "paused");
   const failures = runs.filter(
@@ -42,12 +44,16 @@ export function glanceOf({ connection, trouble, runs, robots, ofFleets, known, n
   );
   const waitedFor = new Set(goingOn.map(({ id }) => id));
   const lost = robots.filter(({ state, run }) => state === "lost" && run !== null && waitedFor.has(run));
+  const waiting = goingOn.filter(({ waits }) => waits.length > 0);
   const more = goingOnWords(goingOn);
   if (failures.length + lost.length > 0 || trouble !== null) {
-    return { sign: "bad", words: "No robot asks anything, but not all is well.", more, failures, lost };
+    return { sign: "bad", words: "No robot asks anything, but not all is well.", more, failures, lost, waiting };
+  }
+  if (waiting.length > 0) {
+    return { sign: "bad", words: "No robot asks anything, but one waits to be let go.", more, failures, lost, waiting };
   }
   const sign = goingOn.length > 0 ? "well" : "idle";
-  return { sign, words: "No robot asks anything.", more, failures, lost };
+  return { sign, words: "No robot asks anything.", more, failures, lost, waiting };
 }
 
 /** Whether a run has ended badly within a day. */

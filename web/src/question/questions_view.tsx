@@ -1,6 +1,8 @@
 // What the robots ask: one question large, the others in a queue, and what help is awaited.
 import { useEffect } from "preact/hooks";
 import { awaitingHelp, together } from "../state/questions";
+import { runs } from "../state/service";
+import type { RunStatus } from "../wire/types";
 import { Endings } from "./endings_list";
 import { QuestionCard } from "./question_card";
 import { queue, shown, stopChoosing } from "./queue";
@@ -12,9 +14,15 @@ import "./questions_view.css";
 // Whoever has one question before them needs no list.
 const QueueList = later(() => import("./queue_list").then((module) => module.QueueList));
 
+const GOING: ReadonlySet<RunStatus> = new Set<RunStatus>(["running", "paused"]);
+
+// Few runs are steered.
+const RunWaits = later(() => import("../run/steering/run_waits").then((module) => module.RunWaits));
+
 export function QuestionsView() {
   useEffect(() => stopChoosing, []);
   const question = shown.value;
+  const held = [...runs.value.values()].filter(({ status, waits }) => GOING.has(status) && waits.length > 0);
   const waiting = awaitingHelp.value.length + together.value.length > 0;
   const beside = queue.value.length > 1 || (question !== null && waiting);
   return (
@@ -22,6 +30,7 @@ export function QuestionsView() {
       <h1 class="unseen">Questions</h1>
       <Endings />
       <div class="questions-main">
+        {held.map((each) => <RunWaits key={each.id} run={each.id} tree={each.tree} waits={each.waits} going />)}
         {question !== null && <QuestionCard key={question.dialogue} question={question} />}
         {question === null && waiting && <Waiting />}
         {question === null && !waiting && <AtAGlance />}

@@ -7,6 +7,7 @@ export function whyChosen(event: NodeStarted): string {
   const chosen = event.candidates.find((candidate) => candidate.node === event.node);
   const others = event.candidates.filter((candidate) => candidate.node !== event.node);
   const name = plain(event.name);
+  if (chosen?.asked_for_by != null) return `${chosen.asked_for_by} has asked for ${name} next.`;
   if (chosen === undefined) return `${name} was started again where it was.`;
   if (others.length === 0) return `${name} was the only one that could be started.`;
   if (chosen.in_place) return `What ${name} handles stands at its place already.`;

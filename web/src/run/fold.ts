@@ -17,6 +17,7 @@ import type {
 import type { Told } from "../wire/told";
 import { activationOf, type LeafStatus } from "./activation";
 import { lastOf } from "./transcript_lines";
+import { beginSteering, foldSteering, type Steering } from "./steering/steering_fold";
 import { shapeOf, type TreeShape } from "./tree_shape";
 
 export interface LeafState {
@@ -69,6 +70,7 @@ export interface RunState {
   readonly raised: IssueRaised | null;
   readonly resolutions: readonly Resolved[];
   readonly lost: ReadonlySet<string>;
+  readonly steering: Steering;
 }
 
 const IDLE: LeafState = { status: "idle", owner: null, attempts: 0 };
@@ -93,13 +95,15 @@ export function begin(started: RunStarted): RunState {
     raised: null,
     resolutions: [],
     lost: new Set(),
+    steering: beginSteering(started),
   };
 }
 
 /** The state after one more event; events come in order of `seq`. */
 export function fold(state: RunState, event: Told): RunState {
   const seq = Math.max(state.seq, event.seq);
-  return { ...applied(state, event), seq, time: Math.max(state.time, event.time) };
+  const steering = foldSteering(state.steering, event);
+  return { ...applied(state, event), steering, seq, time: Math.max(state.time, event.time) };
 }
 
 function applied(state: RunState, event: Told): RunState {
@@ -138,6 +142,8 @@ function applied(state: RunState, event: Told): RunState {
     }
     case "node_abandoned":
       return { ...state, abandoned: new Set(state.abandoned).add(indexOf(state, event.node)) };
+    case "leaf_tried_again":
+      return tryAgain(state, event.node);
     case "run_paused":
       return { ...state, status: "paused" };
     case "run_resumed":
@@ -180,6 +186,17 @@ function start(state: RunState, event: NodeStarted): RunState {
     choice: event,
     executions: new Map(state.executions).set(event.robot, execution),
   };
+}
+
+/** As if it were new: neither done nor given up, without failed attempts. */
+function tryAgain(state: RunState, path: string): RunState {
+  const again = withLeaf(state, path, () => IDLE);
+  const left = [...state.abandoned].filter((node) => !isAtOrUnder(path, state.shape.paths[node] as string));
+  return left.length === state.abandoned.size ? again : { ...again, abandoned: new Set(left) };
+}
+
+function isAtOrUnder(path: string, top: string): boolean {
+  return path === top || path.startsWith(top === "/" ? "/" : `${top}/`);
 }
 
 function withLeaf(state: RunState, path: string, change: (leaf: LeafState) => LeafState): RunState {

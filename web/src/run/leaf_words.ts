@@ -11,7 +11,11 @@ export function canBeTaken(view: NodeView): boolean {
 }
 
 /** Who does a leaf, and when it is done: not when they say so. */
-export function beingDone({ name, helper, until }: NodeTaken, me: string): string {
+export function beingDone({ name, helper, until, said_done }: NodeTaken, me: string): string {
+  if (said_done) {
+    const says = helper === me ? "You say" : `${helper} says`;
+    return `${says} that ${plain(name)} is done by hand: it is once a robot sees it at its place, until ${clock(until)}.`;
+  }
   const who = helper === me ? "You are" : `${helper} is`;
   return `${who} doing ${plain(name)}, until ${clock(until)}: it is done once a robot sees it at its place.`;
 }

@@ -1,5 +1,6 @@
 // One run: where it stands or stood at a moment, as a tree, a timeline and a transcript.
 import { useComputed } from "@preact/signals";
+import type { ComponentChildren } from "preact";
 import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
 import { later } from "../app/later";
 import { planOf } from "../building/plan";
@@ -7,7 +8,7 @@ import { RunQuestion } from "../question/run_question";
 import { noteKnown } from "../state/failures";
 import { awaitingHelp, questions, together } from "../state/questions";
 import { TreeDrawing } from "../tree/tree_drawing";
-import { nodesOfRun } from "../tree/tree_node";
+import { nodesOfRun, type Steered } from "../tree/tree_node";
 import { plain } from "../tree/words";
 import type { Told } from "../wire/told";
 import type { NodeStarted, NodeView } from "../wire/types";
@@ -22,6 +23,8 @@ import { doersOf } from "./leaf_words";
 import { useMomentInAddress } from "./moment_in_address";
 import { openRun, type RunFeed } from "./run_feed";
 import { RunHeader } from "./run_header";
+import { steeredOf } from "./steering/steered";
+import { waitsOf } from "./steering/waits";
 import { Scrubber } from "./scrubber";
 import { Tabs, useNarrow } from "./tabs";
 import { lanesOf, type TimelineItem } from "./timeline/lanes";
@@ -31,6 +34,10 @@ import { usePlaying } from "./use_playing";
 import "./run.css";
 
 const ScenePanel = later(() => import("./scene/scene_panel").then((module) => module.ScenePanel));
+
+const SteeringPanel = later(() => import("./steering/steering_panel").then((module) => module.SteeringPanel));
+
+const RunWaits = later(() => import("./steering/run_waits").then((module) => module.RunWaits));
 
 const Plots = later(() => import("./plots/plots").then((module) => module.Plots));
 
@@ -141,6 +148,8 @@ function Shown({ feed, version, state, latest }: ShownProps) {
   );
   const choices = useChoices(feed, state, selected);
   const talkedAbout = useTalkedAbout(state);
+  const waits = useMemo(() => waitsOf(state), [state.steering, state.leaves, state.abandoned, state.status]);
+  const steered = useMemo(() => steeredOf(state.steering, waits), [state.steering, waits]);
   // Made anew only with what it shows: most events change neither the tree nor the selection.
   const tree = useMemo(
     () => (
@@ -150,15 +159,17 @@ function Shown({ feed, version, state, latest }: ShownProps) {
         people={state.people}
         talkedAbout={talkedAbout}
         result={state.result}
+        steered={steered}
         selected={selected}
         onSelect={setSelected}
       />
     ),
-    [views, state.people, talkedAbout, state.result, selected],
+    [views, state.people, talkedAbout, state.result, steered, selected],
   );
   const chosen = views.find((view) => view.node === selected) ?? null;
   const choice = (
     <div class="run-choice">
+      <SteeringPanel state={state} selected={chosen} newest={newest} onSelect={setSelected} />
       <ChoicePanel node={chosen} choices={choices} result={state.result} onChoose={goToEvent} />
       {(state.people.size > 0 || !ended(latest.status)) && (
         <Leaves
@@ -170,6 +181,11 @@ function Shown({ feed, version, state, latest }: ShownProps) {
         />
       )}
     </div>
+  );
+  const talk = (
+    <Talk state={state} newest={newest}>
+      {waits.length > 0 && <RunWaits run={state.started.run} waits={waits} going={newest} />}
+    </Talk>
   );
   const timeline = useMemo(
     () => (
@@ -203,7 +219,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
       <RunHeader newest={latest} moment={moment} />
       {narrow ? (
         <>
-          <Talk state={state} newest={newest} />
+          {talk}
           <Tabs
             panels={[
               { id: "tree", name: "Tree", content: [tree, choice] },
@@ -219,7 +235,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
           <div class="run-area tree">{tree}</div>
           <div class="run-area timeline">{timeline}</div>
           <div class="run-area side">
-            <Talk state={state} newest={newest} />
+            {talk}
             {cameras}
             {choice}
             {transcript}
@@ -237,7 +253,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
 }
 
 /** The open question, or what was being talked about at a moment of the past. */
-function Talk({ state, newest }: { state: RunState; newest: boolean }) {
+function Talk({ state, newest, children }: { state: RunState; newest: boolean; children: ComponentChildren }) {
   const { run } = state.started;
   const asked = questions.value.some((question) => question.run === run);
   const known = new Set([...questions.value, ...awaitingHelp.value, ...together.value].map((each) => each.dialogue));
@@ -245,6 +261,7 @@ function Talk({ state, newest }: { state: RunState; newest: boolean }) {
   const told = [...state.dialogues.values()].filter(({ opened }) => !newest || !known.has(opened.dialogue));
   return (
     <div class="run-talk">
+      {children}
       {newest && <RunQuestion run={run} />}
       {!newest && asked && <p class="run-waiting">A question is open now: go back to live to answer it.</p>}
       {told.map((dialogue) => (
@@ -266,14 +283,15 @@ interface TreePanelProps {
   people: RunState["people"];
   talkedAbout: ReadonlySet<string>;
   result: RunState["result"];
+  steered: ReadonlyMap<string, Steered>;
   selected: string | null;
   onSelect: (path: string | null) => void;
 }
 
-function TreePanel({ name, views, people, talkedAbout, result, selected, onSelect }: TreePanelProps) {
+function TreePanel({ name, views, people, talkedAbout, result, steered, selected, onSelect }: TreePanelProps) {
   const nodes = useMemo(
-    () => nodesOfRun(views, talkedAbout, people, result),
-    [views, talkedAbout, people, result],
+    () => nodesOfRun(views, talkedAbout, people, result, steered),
+    [views, talkedAbout, people, result, steered],
   );
   const active = nodes.find((node) => node.kind === "behavior" && node.state === "active");
   const asksOrFailed = nodes.find((node) => node.state === "in_dialogue" || node.state === "failed");

@@ -31,6 +31,19 @@ const STATUS_AFTER: Readonly<Partial<Record<Event["type"], RunStatus>>> = {
   run_aborted: "aborted",
 };
 
+/** After these a run may wait before other leaves, or before none. */
+const MAY_END_WAITS: ReadonlySet<Event["type"]> = new Set([
+  "leaf_let_go",
+  "leaf_tried_again",
+  "breakpoint_removed",
+  "autonomy_set",
+  "node_started",
+  "node_taken",
+  "node_left_out",
+  "node_undone",
+  "node_abandoned",
+]);
+
 const listeners = new Set<(event: Told) => void>();
 const snapshotListeners = new Set<() => void>();
 let socket: HelperSocket | null = null;
@@ -142,6 +155,9 @@ function takeEvent(event: Told): void {
   const status = STATUS_AFTER[event.type];
   if (run !== undefined && status !== undefined) {
     runs.value = new Map(runs.value).set(run.id, { ...run, status, time: event.time });
+  }
+  if (event.type === "leaf_held" || (run !== undefined && run.waits.length > 0 && MAY_END_WAITS.has(event.type))) {
+    void refreshRuns();
   }
   if (event.type === "run_started" || event.type === "run_finished" || event.type === "run_failed") {
     void refreshRuns();

@@ -1,6 +1,6 @@
 // The card of one node: its shape tells the kind, its sign and word the state.
 import type { PlacedNode } from "./layout";
-import { KindSign, StateSign } from "./signs";
+import { BreakpointSign, KindSign, StateSign } from "./signs";
 import type { NodeKind, TreeNode } from "./tree_node";
 import { KIND_RULES, KIND_WORDS, plain, shortened, stateWord, withoutRun } from "./words";
 
@@ -36,6 +36,7 @@ export function NodeCard({ placed, highest, compact }: CardProps) {
           x={width - 2 * METER_WIDTH - (node.kind === "behavior" ? 18 : 22)}
         />
       )}
+      {node.steered?.breakpoint === true && <BreakpointSign waits={node.steered.waits} y={height / 2} />}
       <path class="ring" d={outline(node.kind, width, height)} />
     </>
   );

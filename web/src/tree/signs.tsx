@@ -72,3 +72,12 @@ export function WrongSign({ x }: { x: number }) {
     </g>
   );
 }
+
+/** A stop sign on the side from which a node is come to; filled while a robot waits there. */
+export function BreakpointSign({ waits, y }: { waits: boolean; y: number }) {
+  return (
+    <g class={`breakpoint ${waits ? "waits" : ""}`} transform={`translate(0 ${y})`}>
+      <path d="M-3.300 -8H3.300L8 -3.300V3.300L3.300 8H-3.300L-8 3.300V-3.300Z" />
+    </g>
+  );
+}

@@ -21,6 +21,14 @@ export interface TreeNode {
   byPerson: boolean;
   /** Attempts that have failed. */
   attempts: number;
+  /** How people steer it: whether a breakpoint stands before it, whether it waits, whether it is to be next. */
+  steered: Steered | null;
+}
+
+export interface Steered {
+  breakpoint: boolean;
+  waits: boolean;
+  next: boolean;
 }
 
 /** The nodes of a run, from what the service or the fold says of them; `result` once it has ended. */
@@ -29,6 +37,7 @@ export function nodesOfRun(
   inDialogue: ReadonlySet<string>,
   people: ReadonlyMap<string, unknown> = new Map(),
   result: Pick<RunResult, "node"> | null = null,
+  steered: ReadonlyMap<string, Steered> = new Map(),
 ): TreeNode[] {
   return views.map((view) => ({
     path: view.node,
@@ -41,6 +50,7 @@ export function nodesOfRun(
     owner: view.owner,
     byPerson: people.has(view.node),
     attempts: view.attempts,
+    steered: steered.get(view.node) ?? null,
   }));
 }
 
@@ -74,6 +84,7 @@ export function nodesOfDefinition(definition: Readonly<Record<string, unknown>>)
     owner: null,
     byPerson: false,
     attempts: 0,
+    steered: null,
   }));
 }
 

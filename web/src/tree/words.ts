@@ -35,6 +35,8 @@ export const STATE_WORDS: Readonly<Record<NodeState, string>> = {
 
 /** The word under a node: who does what is active, where that is a person. */
 export function stateWord(node: TreeNode, state: NodeState): string {
+  if (node.steered?.waits === true) return "waits";
+  if (node.steered?.next === true && state === "eligible") return "next";
   return node.byPerson ? "a person" : STATE_WORDS[state];
 }
 
@@ -61,6 +63,9 @@ export function described(node: TreeNode, hidden: number, leftOut: number, probl
   if (node.behavior !== null) parts[1] = plain(node.behavior);
   if (node.state !== null) parts.push(STATE_WORDS[node.state]);
   if (node.owner !== null) parts.push(`${node.byPerson ? "being done" : "held"} by ${node.owner}`);
+  if (node.steered?.breakpoint === true) parts.push("a breakpoint before it");
+  if (node.steered?.waits === true) parts.push("waits to be let go");
+  if (node.steered?.next === true) parts.push("asked for next");
   if (node.level !== null) parts.push(`level ${node.level.toFixed(2)}`);
   if (node.potential !== null) parts.push(`potential ${node.potential.toFixed(2)}`);
   if (node.attempts > 0) parts.push(`${node.attempts} failed`);

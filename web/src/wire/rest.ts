@@ -5,13 +5,18 @@ import type {
   BehaviorView,
   ChosenView,
   Detection,
+  DeviceView,
   DialogueView,
+  DocumentCheck,
+  DocumentSummary,
+  DocumentView,
   Event,
   FleetView,
   Intervention,
   IssueSummary,
   Layout,
   LeafSaid,
+  NodeSteeringView,
   Problem as ProblemDocument,
   PushView,
   QuestionBatchView,
@@ -25,15 +30,14 @@ import type {
   ScenarioSummary,
   SceneSummary,
   SessionView,
+  SetAutonomyRequest,
   SiteView,
   SpeechView,
   Statistics,
+  SteerNodeRequest,
+  SteeringView,
   TrialView,
   UnderstoodView,
-  DeviceView,
-  DocumentCheck,
-  DocumentSummary,
-  DocumentView,
   WayReport,
   WorldView,
 } from "./types";
@@ -141,6 +145,12 @@ export const takeLeaf = (id: string, node: string, helper: string) => leaf<RunSu
 export const giveLeafBack = (id: string, node: string, helper: string) =>
   leaf<RunSummary>(id, "give_back", { node, helper });
 export const sayOfLeaf = (id: string, words: string, helper: string) => leaf<LeafSaid>(id, "say", { words, helper });
+
+/** What may be said of a node of a run now. */
+export const steeringOffers = (id: string, node: string) =>
+  call<NodeSteeringView>("GET", `/api/runs/${segment(id)}/steering/offers?node=${segment(node)}`);
+export const steer = (id: string, wish: SteerNodeRequest | SetAutonomyRequest) =>
+  call<SteeringView>("POST", `/api/runs/${segment(id)}/steering`, wish);
 
 const EVENTS_AT_ONCE = 1000;
 

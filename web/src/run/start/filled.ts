@@ -1,6 +1,6 @@
 // What can be chosen for a new run, what is filled in, and the request that it makes.
 import * as rest from "../../wire/rest";
-import type { RobotView, RunRequest, ScenarioSummary, DocumentSummary, SiteView, WorldView } from "../../wire/types";
+import type { AutonomyLevel, RobotView, RunRequest, ScenarioSummary, DocumentSummary, SiteView, WorldView } from "../../wire/types";
 import { robotsOfRequest } from "./standing";
 
 const LARGEST_SEED = 2 ** 31;
@@ -30,6 +30,7 @@ export interface Filled {
   answers: "live" | "scenario" | "random" | "none";
   interventions: boolean;
   maxAttempts: string;
+  autonomy: AutonomyLevel;
 }
 
 /** Read what can be chosen. */
@@ -68,6 +69,7 @@ export function firstFilled(tree: string | null, { trees, worlds }: Choices): Fi
     answers: "live",
     interventions: false,
     maxAttempts: "3",
+    autonomy: "full",
   };
 }
 
@@ -93,6 +95,7 @@ export function request(filled: Filled): RunRequest {
     // An empty field is no number: the service says so at it.
     max_attempts: Number.parseFloat(filled.maxAttempts),
     answers: filled.answers === "scenario" ? null : filled.answers,
+    autonomy: filled.autonomy,
   };
   // A site says the rest itself.
   if (filled.site !== "") return { ...everywhere, site: filled.site };

@@ -9,7 +9,8 @@ export type StartField =
   | "seed"
   | "answers"
   | "interventions"
-  | "max_attempts";
+  | "max_attempts"
+  | "autonomy";
 
 /** What is said at each field; `form` has what is about none of them. */
 export type StartMistakes = Partial<Record<StartField | "form", string>>;
@@ -24,6 +25,7 @@ const FIELDS: ReadonlySet<string> = new Set<StartField>([
   "answers",
   "interventions",
   "max_attempts",
+  "autonomy",
 ]);
 
 /** The first of these that a sentence fits says which field it is about. */

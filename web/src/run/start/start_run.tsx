@@ -4,6 +4,8 @@ import { may, whyNot } from "../../state/access";
 import { go } from "../../app/router";
 import { connection } from "../../state/service";
 import * as rest from "../../wire/rest";
+import type { AutonomyLevel } from "../../wire/types";
+import { LevelOptions } from "../steering/autonomy_choice";
 import { AnswerChoice, WorldChoice } from "./choices";
 import { Field, Mistake, told } from "./field";
 import { type Choices, type Filled, firstFilled, isLive, readChoices, request, settled, withChosen } from "./filled";
@@ -105,6 +107,11 @@ function StartForm({ tree, choices }: { tree: string | null; choices: Choices })
           )}
           <Field field="max_attempts" label="Attempts" mistakes={mistakes} hint="After so many failed ones a behavior is given up.">
             <input id="start-max_attempts" {...told("max_attempts", mistakes)} type="number" inputMode="numeric" value={filled.maxAttempts} onInput={number("maxAttempts")} />
+          </Field>
+          <Field field="autonomy" label="Autonomy" mistakes={mistakes} hint="Where the robot asks first it waits until an operator lets it go on.">
+            <select id="start-autonomy" {...told("autonomy", mistakes)} value={filled.autonomy} onChange={(event) => fill({ autonomy: event.currentTarget.value as AutonomyLevel })}>
+              <LevelOptions />
+            </select>
           </Field>
         </div>
         {!atSite && !isLive(filled) && (

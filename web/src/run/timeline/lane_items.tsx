@@ -12,7 +12,7 @@ const CROWD = 60;
 const CROWDED_PX = 12;
 
 /** What is on these lanes takes time. */
-const BARS: ReadonlySet<LaneKind> = new Set<LaneKind>(["steps", "lost", "dialogues"]);
+const BARS: ReadonlySet<LaneKind> = new Set<LaneKind>(["steps", "lost", "dialogues", "waits"]);
 
 interface LaneItemsProps {
   lane: Lane;

@@ -4,7 +4,7 @@ import type { DialogueClosed, Event, NodeDone, NodeLeftOut, NodeReset, Resolutio
 import type { Told } from "../../wire/told";
 import { lastOf } from "../transcript_lines";
 
-export type LaneKind = "steps" | "faults" | "lost" | "dialogues" | "people" | "resolutions";
+export type LaneKind = "steps" | "faults" | "lost" | "dialogues" | "people" | "waits" | "resolutions";
 
 /** One thing on a lane; `start` equals `end` for what takes no time. Seconds of the run's clock. */
 export interface TimelineItem {
@@ -34,6 +34,31 @@ export const RESOLUTION_WORDS: Readonly<Record<Resolution, string>> = {
   robot_retry: "tries again",
 };
 
+const STEERING_WORDS = {
+  breakpoint_set: "breakpoint",
+  breakpoint_removed: "no breakpoint",
+  leaf_let_go: "go on",
+  leaf_preferred: "next",
+  leaf_not_preferred: "not next",
+  leaf_tried_again: "again",
+} as const;
+
+const ENDS_A_WAIT: ReadonlySet<Event["type"]> = new Set([
+  "leaf_let_go",
+  "leaf_tried_again",
+  "node_started",
+  "node_taken",
+  "node_left_out",
+]);
+
+const ENDS_ALL_WAITS: ReadonlySet<Event["type"]> = new Set([
+  "breakpoint_removed",
+  "autonomy_set",
+  "run_finished",
+  "run_failed",
+  "run_aborted",
+]);
+
 const ENDINGS = {
   node_done: ["done", "done"],
   node_left_out: ["put-back", "left out"],
@@ -54,13 +79,33 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
     lost: [],
     dialogues: [],
     people: [],
+    waits: [],
     resolutions: [],
   };
   const running = new Map<string, Growing>();
   const open = new Map<string, Growing>();
   const away = new Map<string, Growing>();
+  const held = new Map<string, Growing>();
   for (const event of events) {
+    endWaits(held, event);
     switch (event.type) {
+      case "breakpoint_set":
+      case "breakpoint_removed":
+      case "leaf_let_go":
+      case "leaf_preferred":
+      case "leaf_not_preferred":
+      case "leaf_tried_again":
+        lanes.people.push(point(event, STEERING_WORDS[event.type], `${event.by} ${lastOf(event)}`, "deed", event.node));
+        break;
+      case "autonomy_set":
+        lanes.people.push(point(event, `autonomy ${event.level}`, `${event.by} ${lastOf(event)}`, "deed", null));
+        break;
+      case "leaf_held": {
+        const item = bar(event, now, plain(event.name), lastOf(event), "held", event.node);
+        held.set(event.node, item);
+        lanes.waits.push(item);
+        break;
+      }
       case "node_started": {
         const name = plain(event.name);
         const item = bar(event, now, name, `${name}, attempt ${event.attempt}`, "execution", event.node);
@@ -144,8 +189,20 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
     ...(lanes.lost.length > 0 ? [{ kind: "lost", name: "Robot lost", items: lanes.lost } as const] : []),
     { kind: "dialogues", name: "Dialogues", items: lanes.dialogues },
     { kind: "people", name: "People", items: lanes.people },
+    ...(lanes.waits.length > 0 ? [{ kind: "waits", name: "Waits", items: lanes.waits } as const] : []),
     { kind: "resolutions", name: "Resolutions", items: lanes.resolutions },
   ];
+}
+
+/** What ends that a robot waits before a leaf; whoever still has a reason to wait says so anew. */
+function endWaits(held: Map<string, Growing>, event: Told): void {
+  const all = ENDS_ALL_WAITS.has(event.type);
+  if (!all && !ENDS_A_WAIT.has(event.type)) return;
+  for (const [node, item] of held) {
+    if (!all && (!("node" in event) || event.node !== node)) continue;
+    item.end = event.time;
+    held.delete(node);
+  }
 }
 
 function bar(event: Event, end: number, word: string, title: string, look: string, node: string | null): Growing {

@@ -12,6 +12,7 @@ const KIND_WORDS: Readonly<Record<LaneKind, string>> = {
   lost: "Robot lost",
   dialogues: "Dialogue",
   people: "Person",
+  waits: "Waits",
   resolutions: "Resolution",
 };
 
