@@ -22,6 +22,7 @@ export function drawnNodes(tree: PlainNode): TreeNode[] {
       owner: null,
       byPerson: false,
       attempts: 0,
+      steered: null,
     };
   });
 }

@@ -3,7 +3,7 @@ import type { BehaviorView } from "../../wire/types";
 import { KIND_WORDS, plain } from "../../tree/words";
 import type { SceneNames } from "./new_nodes";
 import { ParameterField } from "./parameter_field";
-import { type Parameter, parametersOf } from "./parameters";
+import { AUTONOMY, type Parameter, parametersOf } from "./parameters";
 import { GOAL_KINDS, goalKindOf, type GoalKind, type PlainNode } from "./plain_node";
 
 interface NodeFormProps {
@@ -75,7 +75,7 @@ function KindField({ kind, onKind }: { kind: GoalKind; onKind: (kind: GoalKind) 
 function LeafFields({ node, behaviors, scene, onFill }: NodeFormProps) {
   const behavior = typeof node.behavior === "string" ? node.behavior : "";
   const known = behaviors?.find(({ name }) => name === behavior);
-  const parameters = known === undefined ? [] : parametersOf(known.parameters);
+  const parameters = [...(known === undefined ? [] : parametersOf(known.parameters)), AUTONOMY];
   const keys = new Set(["name", "behavior", ...parameters.map(({ key }) => key)]);
   const unknown = known === undefined ? [] : Object.keys(node).filter((key) => !keys.has(key));
   const set = (key: string, value: unknown) => onFill(value === undefined ? withoutKey(node, key) : { ...node, [key]: value });
@@ -121,7 +121,7 @@ function namesFor({ key }: Parameter, { objects, places }: SceneNames): readonly
 /** A leaf of another behavior: what that has, too, stays. */
 function withBehavior(node: PlainNode, behavior: string, behaviors: readonly BehaviorView[] | null): PlainNode {
   const known = behaviors?.find(({ name }) => name === behavior);
-  const kept = new Set(["name", ...(known === undefined ? [] : parametersOf(known.parameters).map(({ key }) => key))]);
+  const kept = new Set(["name", AUTONOMY.key, ...(known === undefined ? [] : parametersOf(known.parameters).map(({ key }) => key))]);
   const stays = Object.entries(node).filter(([key]) => kept.has(key));
   return { behavior, ...Object.fromEntries(stays) };
 }

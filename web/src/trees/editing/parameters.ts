@@ -11,6 +11,16 @@ export interface Parameter {
   max: number | null;
 }
 
+/** What any leaf may say, whatever its behavior: the level of autonomy that it needs. */
+export const AUTONOMY: Parameter = {
+  key: "autonomy",
+  required: false,
+  kind: "choice",
+  choices: ["low", "high", "full"],
+  min: null,
+  max: null,
+};
+
 type Schema = Readonly<Record<string, unknown>>;
 
 export function parametersOf(schema: Schema): Parameter[] {
