@@ -53,7 +53,7 @@ async def by_dropping(page: Page, name: str, content: bytes) -> None:
 
 async def open_library(open_page: OpenPage) -> Page:
     page = await open_page("/trees")
-    await expect(page.get_by_role("link", name="eket")).to_be_visible()
+    await expect(page.get_by_role("link", name="eket built in")).to_be_visible()
     return page
 
 
@@ -237,5 +237,5 @@ async def test_tree_is_deleted_after_one_question(open_page: OpenPage) -> None:
     await page.get_by_role("button", name="Delete").click()
     await page.get_by_role("dialog").get_by_role("button", name="Delete").click()
     await expect(page).to_have_url("/trees")
-    await expect(page.get_by_role("link", name="eket")).to_be_visible()
+    await expect(page.get_by_role("link", name="eket built in")).to_be_visible()
     await expect(page.get_by_role("link", name="shelf")).to_have_count(0)

@@ -122,8 +122,22 @@ function useFollowing(list: { current: HTMLElement | null }, current: number, ne
       return;
     }
     const line = scrolled.querySelector<HTMLElement>("[aria-current]");
-    if (line === null) return;
+    return line === null ? undefined : bringToMiddle(scrolled, line);
+  }, [current, newest]);
+}
+
+const MOST_FRAMES = 10;
+
+/** Scroll until a line is in the middle; returns how to stop. */
+function bringToMiddle(scrolled: HTMLElement, line: HTMLElement): () => void {
+  let request = 0;
+  let frames = 0;
+  const step = () => {
     const off = line.getBoundingClientRect().top - scrolled.getBoundingClientRect().top;
     scrolled.scrollTop += off - scrolled.clientHeight / 2;
-  }, [current, newest]);
+    // How high portions are that were not drawn yet is a guess: once they are, it is farther or nearer.
+    if (++frames < MOST_FRAMES) request = requestAnimationFrame(step);
+  };
+  step();
+  return () => cancelAnimationFrame(request);
 }
