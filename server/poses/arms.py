@@ -61,7 +61,7 @@ class OtherArms:
         ]
 
     def take(self, robot: str, time_s: float, poses: Poses) -> None:
-        """What a robot of the run has told; what fits not to what it shows is left out."""
+        """What a robot of the run has told; poses that do not fit what it shows are left out."""
         shows = self._shows.get(robot)
         if shows is not None and len(poses.joints) == len(shows.joints):
             self._told[robot] = _Told(time_s, poses)

@@ -1,5 +1,5 @@
 // The robot in the scene: its model where there is one, else a two-finger gripper at the tool point.
-import { BoxGeometry, Color, Group, LoadingManager, Mesh, MeshLambertMaterial, SRGBColorSpace } from "three";
+import { BoxGeometry, type BufferGeometry, Color, Group, LoadingManager, Mesh, MeshLambertMaterial, SRGBColorSpace } from "three";
 import { STLLoader } from "three/addons/loaders/STLLoader.js";
 import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import URDFLoader, { type URDFRobot } from "urdf-loader";
@@ -22,34 +22,39 @@ export async function loadRobot(
   joints: readonly string[],
   changed: () => void,
 ): Promise<DrawnRobot> {
-  const manager = new LoadingManager(changed);
+  const arm = new MeshLambertMaterial({ color: ARM });
+  const gripper = new MeshLambertMaterial({ color: GRIPPER });
+  let robot: URDFRobot | null = null;
+  // Each mesh as it comes: of a file that two robots load at once only one of them hears the end.
+  const came = () => {
+    if (robot !== null) paint(robot, arm, gripper);
+    changed();
+  };
+  const manager = new LoadingManager();
   const loader = new URDFLoader(manager);
   const meshes = new STLLoader(manager);
   loader.loadMeshCb = (url, _manager, _material, done) => {
     const failed = (error: unknown) => done(new Group(), error as Error);
-    meshes.load(url, (geometry) => done(new Mesh(toCreasedNormals(geometry, CREASE_RAD))), undefined, failed);
-  };
-  const loaded = new Promise<void>((resolve) => {
-    manager.onLoad = () => {
-      resolve();
-      changed();
+    const take = (geometry: BufferGeometry) => {
+      done(new Mesh(toCreasedNormals(geometry, CREASE_RAD)));
+      came();
     };
-  });
-  const robot = await loader.loadAsync(address);
-  void loaded.then(() => paint(robot));
+    meshes.load(url, take, undefined, failed);
+  };
+  const read = await loader.loadAsync(address);
+  robot = read;
+  came();
   const root = new Group();
-  root.add(robot);
+  root.add(read);
   return {
     root,
     show(arm) {
-      for (const [index, name] of joints.entries()) robot.setJointValue(name, arm.joints[index] as number);
+      for (const [index, name] of joints.entries()) read.setJointValue(name, arm.joints[index] as number);
     },
   };
 }
 
-function paint(robot: URDFRobot): void {
-  const arm = new MeshLambertMaterial({ color: ARM });
-  const gripper = new MeshLambertMaterial({ color: GRIPPER });
+function paint(robot: URDFRobot, arm: MeshLambertMaterial, gripper: MeshLambertMaterial): void {
   for (const [name, link] of Object.entries(robot.links)) {
     for (const visual of link.children.filter((each) => "isURDFVisual" in each)) {
       visual.traverse((each) => {
