@@ -30,11 +30,14 @@ import pocketsphinx
 from scipy.io import wavfile
 from scipy.signal import resample_poly
 
+from mend.server.speech.agreeing_decoder import AgreeingDecoder
 from mend.server.speech.commands import Command
-from mend.server.speech.decoding import Decoder, Hypothesis, SphinxDecoder
+from mend.server.speech.decoding import Decoder, Hypothesis
 from mend.server.speech.ear import ProcessEars
 from mend.server.speech.language_model import COMMAND_MARK, command_in, name, write_language_model
 from mend.server.speech.recognizer import Recognizer, Utterance
+from mend.server.speech.speech_model import SherpaTranscriber, find_speech_model
+from mend.server.speech.sphinx_decoder import SphinxDecoder
 from mend.server.speech.vocabulary import phrase_commands
 
 CACHE = Path("out/speech")
@@ -54,6 +57,13 @@ HELD_OUT_VOICES = (
     "espeak-ng:en-gb:165", "espeak-ng:en-us+m7:170", "espeak-ng:en-gb-scotland+f3:160",
     "espeak-ng:en-us+linda:150", "espeak-ng:en-gb-x-gbcwmd:160", "espeak-ng:en-us+m1:150",
     "espeak-ng:en-us-nyc:160", "flite:kal",
+)  # fmt: skip
+
+NEW_VOICES = (
+    "espeak-ng:en-us+belinda:165", "espeak-ng:en-gb+m4:155", "espeak-ng:en-us+f5:150",
+    "espeak-ng:en-us+paul:160", "espeak-ng:en-us+anika:160", "espeak-ng:en-029:155",
+    "espeak-ng:en-gb-x-gbclan+f4:165", "espeak-ng:en-us+m2:140", "espeak-ng:en-gb+benjamin:160",
+    "espeak-ng:en-us+steph3:165",
 )  # fmt: skip
 
 Sound = npt.NDArray[np.float64]
@@ -322,10 +332,10 @@ def listen(decoder: Decoder, said: Sequence[Spoken], condition: Condition) -> Ta
     return tally
 
 
-async def measure_latency(said: Sequence[Spoken]) -> list[float]:
+async def measure_latency(said: Sequence[Spoken], model: Path | None) -> list[float]:
     """Milliseconds from the end of speech to the answer, in real time through an ear's process."""
     latencies_ms = []
-    ears = ProcessEars(1)
+    ears = ProcessEars(1, model)
     ear = await ears.open()
     for seed, each in enumerate(said):
         sound, _ = microphone(each, Condition("clean"), seed)
@@ -396,10 +406,20 @@ def compare(
     return heard.latencies_ms
 
 
+def decoder_with(model: Path | None) -> Decoder:
+    """What listens: PocketSphinx, alone or with an operator's model."""
+    if model is None:
+        return SphinxDecoder()
+    return AgreeingDecoder(SphinxDecoder(), SherpaTranscriber(find_speech_model(model)))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="few voices, phrases and conditions")
     parser.add_argument("--tuned", action="store_true", help="what the weights were set with")
+    parser.add_argument("--new", action="store_true", help="voices chosen after all was set")
+    parser.add_argument("--seed", type=int, default=0, help="who says which of the phrases")
+    parser.add_argument("--model", type=Path, help="a folder with a speech model of one's own")
     parser.add_argument("--misses", action="store_true", help="also print what was misheard")
     arguments = parser.parse_args()
     for engine in ("espeak-ng", "flite"):
@@ -407,20 +427,22 @@ def main() -> None:
             sys.exit(f"{engine} is not installed: the corpus is made with espeak-ng and flite")
     part = "tuned" if arguments.tuned else "held_out"
     voices = TUNED_VOICES if arguments.tuned else HELD_OUT_VOICES
+    if arguments.new:
+        voices = NEW_VOICES
     conditions, size = CONDITIONS, FULL
     if arguments.quick:
         voices, conditions, size = voices[:4], (CONDITIONS[0], CONDITIONS[1], CONDITIONS[3]), QUICK
-    ours, peer = SphinxDecoder(), GrammarDecoder()
+    ours, peer = decoder_with(arguments.model), GrammarDecoder()
     latencies_ms: list[float] = []
     for seed, condition in enumerate(conditions):
-        said = corpus(part, voices, size, seed)
+        said = corpus(part, voices, size, arguments.seed + seed)
         if seed == 0:
             print(f"{len(said)} utterances of {len(voices)} voices under each condition: {part}")
         latencies_ms += compare(ours, peer, said, condition, arguments.misses)
     print(f"end of speech to command, in processor time: {percentiles(latencies_ms)}")
     answers = [each for each in said if each.command in (Command.YES, Command.NO)]
     sample = random.Random(0).sample(answers, 8 if arguments.quick else 40)
-    real_ms = asyncio.run(measure_latency(sample))
+    real_ms = asyncio.run(measure_latency(sample, arguments.model))
     print(f"end of speech to answer, in real time on this machine: {percentiles(real_ms)}")
 
 

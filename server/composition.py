@@ -329,7 +329,10 @@ def _speech(settings: Settings) -> SpeechAbilities:
     )
     texts = voice if isinstance(voice, NoVoice) else SpokenTexts(voice)
     return SpeechAbilities(
-        texts, choose_ears(settings.speech_recognition, settings.speech_conversations)
+        texts,
+        choose_ears(
+            settings.speech_recognition, settings.speech_conversations, settings.speech_model
+        ),
     )
 
 

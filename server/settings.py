@@ -131,6 +131,8 @@ class Settings(BaseSettings):
     """A voice file for piper (`.onnx`, its `.onnx.json` beside it)."""
     speech_recognition: bool = True
     """Whether helpers may answer by voice."""
+    speech_model: Path | None = None
+    """A folder with a speech model of one's own (Moonshine); None: PocketSphinx alone."""
     speech_conversations: Annotated[int, Field(ge=1, le=1000)] = 8
     """How many helpers may answer by voice at once; each takes a process of about 80 MB."""
     log_level: Literal["critical", "error", "warning", "info", "debug"] = "info"

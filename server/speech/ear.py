@@ -1,6 +1,6 @@
 """The ear: a port for what a conversation listens with, and the child process behind it.
 
-PocketSphinx keeps Python's global lock while it decodes, so each conversation has a process.
+A decoder keeps Python's global lock while it works, so each conversation has a process.
 """
 
 import asyncio
@@ -13,12 +13,14 @@ from collections.abc import Awaitable, Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Literal, Protocol, Self
 
 from pydantic import BaseModel, ConfigDict
 
 from mend.errors import MendError, UnavailableError
 from mend.server.speech.commands import Command
+from mend.server.speech.speech_model import SpeechModelError, find_speech_model
 from mend.server.speech.vocabulary import Vocabulary
 
 log = logging.getLogger(__name__)
@@ -113,13 +115,18 @@ class NoEars:
     why_not: str
 
 
-def choose_ears(wanted: bool, at_once: int) -> "ProcessEars | NoEars":
-    """The ears that this installation has."""
+def choose_ears(wanted: bool, at_once: int, model: Path | None = None) -> "ProcessEars | NoEars":
+    """The ears that this installation has; those with a `model` of the operator's hear better."""
     if not wanted:
         return NoEars("the setting 'speech_recognition' is off")
     if find_spec("pocketsphinx") is None:
         return NoEars("pocketsphinx is not installed: pip install 'mend-robots[speech]'")
-    return ProcessEars(at_once)
+    try:
+        if model is not None:
+            find_speech_model(model)
+    except SpeechModelError as error:
+        return NoEars(str(error))
+    return ProcessEars(at_once, model)
 
 
 class ProcessEars:
@@ -129,13 +136,16 @@ class ProcessEars:
     wait for theirs.
     """
 
-    engine = "pocketsphinx"
-
-    def __init__(self, at_once: int) -> None:
+    def __init__(self, at_once: int, model: Path | None = None) -> None:
         self._at_once = at_once
+        self._model = None if model is None else model.resolve()
         self._taken = 0
         self._kept: list[RecognizerProcess] = []
         self._closed = False
+
+    @property
+    def engine(self) -> str:
+        return "pocketsphinx" if self._model is None else "pocketsphinx and moonshine"
 
     def check_room(self) -> None:
         if self._taken >= self._at_once:
@@ -168,7 +178,7 @@ class ProcessEars:
                 log.warning("a recognizer that was kept has gone; another is started")
             else:
                 return process
-        return await RecognizerProcess.start(vocabulary)
+        return await RecognizerProcess.start(vocabulary, self._model)
 
     async def _give_back(self, process: "RecognizerProcess") -> None:
         self._taken -= 1
@@ -216,12 +226,15 @@ class RecognizerProcess:
         self._to, self._from = process.stdin, process.stdout
 
     @classmethod
-    async def start(cls, vocabulary: Vocabulary = Vocabulary.ANSWER) -> Self:
+    async def start(
+        cls, vocabulary: Vocabulary = Vocabulary.ANSWER, model: Path | None = None
+    ) -> Self:
         """Start one; returns when it is ready. Raises `EarLostError`."""
+        own_model = () if model is None else (str(model),)
         process = await asyncio.create_subprocess_exec(
             # -P: nothing is imported from wherever the service was started.
             sys.executable, "-P", "-m", "mend.server.speech.ear_process", vocabulary,
-            stdin=PIPE, stdout=PIPE,
+            *own_model, stdin=PIPE, stdout=PIPE,
         )  # fmt: skip
         started = cls(process)
         await started._wait_until_ready()

@@ -7,12 +7,17 @@ import os
 import signal
 import sys
 import time
+from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import BinaryIO
 
-from mend.server.speech.decoding import SphinxDecoder
+from mend.server.speech.agreeing_decoder import AgreeingDecoder
+from mend.server.speech.decoding import Decoder
 from mend.server.speech.ear import AFRESH, BREAK, HEADER, EarReport
 from mend.server.speech.recognizer import Heard, Recognizer, SpeechBegan
+from mend.server.speech.speech_model import SherpaTranscriber, find_speech_model
+from mend.server.speech.sphinx_decoder import SphinxDecoder
 from mend.server.speech.vocabulary import Vocabulary
 
 _VOCABULARIES = {code: vocabulary for vocabulary, code in AFRESH.items()}
@@ -26,13 +31,19 @@ def main() -> None:
     # Whatever a library prints must not come between the reports.
     os.dup2(2, 1)
     vocabulary: Vocabulary | None = Vocabulary(sys.argv[1])
+    decoder_of = cache(_agreeing(Path(sys.argv[2])) if len(sys.argv) > 2 else SphinxDecoder)
     while vocabulary is not None:
-        vocabulary = _converse(Recognizer(_decoder_of(vocabulary)), sound, reports)
+        vocabulary = _converse(Recognizer(decoder_of(vocabulary)), sound, reports)
 
 
-@cache
-def _decoder_of(vocabulary: Vocabulary) -> SphinxDecoder:
-    return SphinxDecoder(vocabulary=vocabulary)
+def _agreeing(folder: Path) -> Callable[[Vocabulary], Decoder]:
+    """Decoders with an operator's speech model beside them, which is read once."""
+    transcriber = SherpaTranscriber(find_speech_model(folder))
+
+    def decoder_of(vocabulary: Vocabulary) -> Decoder:
+        return AgreeingDecoder(SphinxDecoder(vocabulary), transcriber, vocabulary)
+
+    return decoder_of
 
 
 def _converse(recognizer: Recognizer, sound: BinaryIO, reports: BinaryIO) -> Vocabulary | None:

@@ -10,8 +10,9 @@ pytest.importorskip("pocketsphinx", reason="pocketsphinx is not installed")
 from wav_device import pcm_of
 
 from mend.server.speech.commands import Command
-from mend.server.speech.decoding import Hypothesis, SphinxDecoder
+from mend.server.speech.decoding import Hypothesis
 from mend.server.speech.recognizer import FRAME_BYTES, Recognizer, Utterance
+from mend.server.speech.sphinx_decoder import SphinxDecoder
 from mend.server.speech.voice import CommandVoice, choose_voice
 
 pytestmark = pytest.mark.slow
