@@ -20,6 +20,7 @@ from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.journal.journal import Entry
 from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.run_state import RunStatus
 from mend.server.runtime.steering_views import SteerNode
 from mend.server.sites.requests import SiteRequest
 from mend.sim.building.scene import scene_of
@@ -94,7 +95,7 @@ async def no_runs(_: Service, open_page: OpenPage) -> Page:
 
 async def runs(service: Service, open_page: OpenPage) -> Page:
     await ask(service)
-    await service.journal.append(Entry(events=recorded_events()))
+    await keep_recorded(service)
     page = await open_page("/runs")
     await expect(page.get_by_text("The task is done")).to_be_visible()
     await expect(page.get_by_text("Asks a question")).to_be_visible(timeout=PATIENCE_MS)
@@ -102,14 +103,14 @@ async def runs(service: Service, open_page: OpenPage) -> Page:
 
 
 async def issues(service: Service, open_page: OpenPage) -> Page:
-    await service.journal.append(Entry(events=recorded_events()))
+    await keep_recorded(service)
     page = await open_page("/issues")
     await expect(page.get_by_text("unreachable")).to_be_visible()
     return page
 
 
 async def statistics(service: Service, open_page: OpenPage) -> Page:
-    await service.journal.append(Entry(events=recorded_events()))
+    await keep_recorded(service)
     page = await open_page("/statistics")
     await expect(page.get_by_role("region", name="By part")).to_be_visible()
     return page
@@ -120,6 +121,9 @@ async def live_run(service: Service, open_page: OpenPage) -> Page:
     page = await open_page(f"/runs/{run}")
     await expect(page.get_by_role("link", name="Questions 1")).to_be_visible(timeout=PATIENCE_MS)
     await expect(page.get_by_role("main").get_by_text("Loading …")).to_have_count(0)
+    # What it was like is looked at; the robot need not go on meanwhile.
+    await service.runtime.pause(run)
+    await expect(page.get_by_role("button", name="Resume")).to_be_visible()
     return page
 
 
@@ -192,6 +196,7 @@ async def run_in_building(service: Service, open_page: OpenPage) -> Page:
         await building.click()
     robots = page.get_by_role("list", name="Robots")
     await expect(robots.get_by_text("Asking").first).to_be_visible(timeout=PATIENCE_MS)
+    await service.runtime.pause(run)
     return page
 
 
@@ -234,8 +239,26 @@ async def steered_run(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+STOLEN = {
+    "name": "stolen",
+    "tree": "both",
+    "interventions": [{"at_s": 0.0, "do": {"act": "steal", "object": "red_box"}}],
+    "answers": ["yes"],
+    "answer_delay_s": 1.0,
+    "person": {"delay_s": 1.0},
+}
+
+
+async def keep_recorded(service: Service) -> UUID:
+    """Have a run of the paper's scenario that has ended, once; its id."""
+    events = recorded_events()
+    if not await service.runtime.has_run(events[0].run):
+        await service.journal.append(Entry(events=events))
+    return events[0].run
+
+
 async def past_of_run(service: Service, open_page: OpenPage) -> Page:
-    page = await finished_run(service, open_page)
+    page = await open_page(f"/runs/{await keep_recorded(service)}")
     await page.get_by_role("button", name="Previous fault").click()
     await expect(page.get_by_role("button", name="Copy link")).to_be_visible()
     return page
@@ -255,12 +278,15 @@ async def plotted_run(service: Service, open_page: OpenPage) -> Page:
 
 
 async def finished_run(service: Service, open_page: OpenPage) -> Page:
-    request = RunRequest(tree="eket", world="tabletop", speed="max", scenario="eket_paper")
+    """A box was stolen, which was talked over, and put back."""
+    await service.library.scenes.save("small_bench", BENCH)
+    await service.library.trees.save("both", BOTH)
+    await service.library.scenarios.save("stolen", json.dumps(STOLEN))
+    request = RunRequest(tree="both", world="tabletop", speed="max", scenario="stolen", seed=2)
     run = await service.runtime.start_run(request)
-    page = await open_page("/runs")
-    row = page.get_by_role("listitem").filter(has_text="eket_paper")
-    await expect(row.get_by_text("Finished")).to_be_visible(timeout=PATIENCE_MS)
-    await page.goto(f"/runs/{run.id}")
+    view = await service.runtime.wait_for_end(run.id)
+    assert view.status is RunStatus.FINISHED
+    page = await open_page(f"/runs/{run.id}")
     main = page.get_by_role("main")
     await expect(main.get_by_role("heading", level=1)).to_be_visible(timeout=PATIENCE_MS)
     await expect(main.get_by_text("Loading …")).to_have_count(0, timeout=PATIENCE_MS)

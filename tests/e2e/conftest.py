@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import pytest_asyncio
 from bare_chromium import CHROMIUM, launch
-from console_in_browser import TOKEN, OpenPage, Stage
+from console_in_browser import NO_WEBGL, TOKEN, OpenPage, Stage
 from played_dialogues import PlayedDialogues
 from playwright.async_api import (
     Browser,
@@ -123,9 +123,13 @@ async def _opening_pages(browser: Browser, url: str) -> AsyncIterator[OpenPage]:
     mistakes: list[str] = []
     contexts: list[BrowserContext] = []
 
-    async def open_page(path: str = "/", helper: str = "anna", **options: object) -> Page:
+    async def open_page(
+        path: str = "/", helper: str = "anna", *, drawn: bool = False, **options: object
+    ) -> Page:
         context = await browser.new_context(base_url=url, **options)
         contexts.append(context)
+        if not drawn:
+            await context.add_init_script(NO_WEBGL)
         signed_in = await context.request.post("/api/session", data={"token": TOKEN})
         assert signed_in.status == 204
         await context.add_init_script(f"localStorage.setItem('mend.helper', '\"{helper}\"')")

@@ -46,7 +46,9 @@ async def test_what_overlaps_is_found(open_page: OpenPage) -> None:
 
 async def test_names_in_the_scene_do_not_overlap(service: Service, open_page: OpenPage) -> None:
     run = await ask(service)
-    page = await open_page(f"/runs/{run}", viewport={"width": WIDTHS[0], "height": TALL})
+    page = await open_page(
+        f"/runs/{run}", drawn=True, viewport={"width": WIDTHS[0], "height": TALL}
+    )
     tab = page.get_by_role("tab", name="Scene")
     names = page.get_by_role("button", name="Names")
     for width in WIDTHS:
