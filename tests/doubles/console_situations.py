@@ -313,9 +313,10 @@ async def scenes(_: Service, open_page: OpenPage) -> Page:
     return page
 
 
-async def scene_out_of_reach(_: Service, open_page: OpenPage) -> Page:
-    """A part was moved where no robot reaches it."""
-    page = await open_page("/edit_scene/eket")
+async def scene_out_of_reach(service: Service, open_page: OpenPage) -> Page:
+    """A box was moved where no robot reaches it."""
+    await service.library.scenes.save("small_bench", BENCH)
+    page = await open_page("/edit_scene/small_bench")
     await page.get_by_label("Forward x (m)").fill("0.95")
     await page.get_by_label("Forward x (m)").press("Enter")
     mistake = page.locator(".mistake-line").filter(has_text="does not reach (0.950")
