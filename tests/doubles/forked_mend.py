@@ -14,9 +14,11 @@ from collections.abc import AsyncIterator, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
+from multiprocessing.connection import wait as wait_for_any
 from multiprocessing.context import ForkServerProcess
 from multiprocessing.reduction import DupFd
 from pathlib import Path
+from threading import Lock
 from typing import Any, Protocol
 
 from sampled import sample
@@ -92,6 +94,7 @@ class Forked:
 
     def __init__(self, process: ForkServerProcess) -> None:
         self._process = process
+        self._looking = Lock()
 
     @property
     def pid(self) -> int:
@@ -100,12 +103,14 @@ class Forked:
 
     @property
     def returncode(self) -> int | None:
-        return self._process.exitcode
+        # Its code can be read once.
+        with self._looking:
+            return self._process.exitcode
 
     async def wait(self) -> int:
-        await asyncio.to_thread(self._process.join)
-        assert self._process.exitcode is not None, "it has ended"
-        return self._process.exitcode
+        while (code := self.returncode) is None:
+            await asyncio.to_thread(wait_for_any, [self._process.sentinel], 1.0)
+        return code
 
     def send_signal(self, signal: int) -> None:
         if self.returncode is None:
@@ -202,6 +207,7 @@ def _be_mend(
     os.environ.clear()
     os.environ.update(environment)
     _bound(descriptors)
+    sys.path[:0] = [each for each in environment.get("PYTHONPATH", "").split(os.pathsep) if each]
     sys.argv = [str(MEND), *arguments]
     main()
 

@@ -19,7 +19,7 @@ from mend.server.runtime.views import DialogueView, RunStatus
 from mend.tasks.intervention import Act, Intervention
 
 # One event loop for all of them, and so one service.
-pytestmark = [pytest.mark.slow(6), pytest.mark.asyncio(loop_scope="module")]
+pytestmark = [pytest.mark.slow(3), pytest.mark.asyncio(loop_scope="module")]
 
 WILLING = {"answers": ["yes"] * 100, "max_attempts": 100, "speed": "max"}
 

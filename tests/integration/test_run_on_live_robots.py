@@ -17,7 +17,7 @@ from mend.server.client import MendClient
 from mend.server.journal import events as ev
 
 # One event loop for all of them, and so one service.
-pytestmark = [pytest.mark.slow(3), pytest.mark.asyncio(loop_scope="module")]
+pytestmark = [pytest.mark.slow, pytest.mark.asyncio(loop_scope="module")]
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -58,6 +58,7 @@ async def run(service: ServiceProcess, *arguments: str) -> Outcome:
 TABLETOP = ("--world", "tabletop", "--speed", "max")
 
 
+@pytest.mark.slow(2)
 async def test_a_run_is_done_at_a_site_and_what_is_not_there_is_said_in_a_sentence(
     site: Site, tmp_path: Path
 ) -> None:
