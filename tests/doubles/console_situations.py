@@ -1,7 +1,7 @@
 """Situations that the console is looked at in: each plays a run, and opens its view."""
 
 import json
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from contextlib import suppress
 from typing import Literal
 from uuid import UUID
@@ -135,16 +135,7 @@ async def begin_two_boxes(service: Service, speed: float | Literal["max"] = 1.0)
     return (await service.runtime.start_run(request)).id
 
 
-ROUNDS = {
-    "name": "rounds",
-    "scene": "office",
-    "tree": {
-        "and": [
-            {"behavior": "go_to", "place": place, "name": f"round_{place}"}
-            for place in ("F1-104", "F2-204", "F1-101", "F2-201")
-        ]
-    },
-}
+ROUNDS = ("F1-104", "F2-204", "F1-101", "F2-201")
 
 
 IN_THE_WAY = {
@@ -155,11 +146,13 @@ IN_THE_WAY = {
 }
 
 
-async def keep_office(service: Service, drawn: int = 8) -> None:
+async def keep_office(service: Service, drawn: int = 8, places: Sequence[str] = ROUNDS) -> None:
     """Have an office with two floors and a robot on each, and a task there."""
+    going = [{"behavior": "go_to", "place": each, "name": f"round_{each}"} for each in places]
+    rounds = {"name": "rounds", "scene": "office", "tree": {"and": going}}
     scene = scene_of(Building(random_building(drawn, 2, 6)), "office", 2)
     await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
-    await service.library.trees.save("rounds", json.dumps(ROUNDS))
+    await service.library.trees.save("rounds", json.dumps(rounds))
     await service.library.scenarios.save("in_the_way", json.dumps(IN_THE_WAY))
 
 
@@ -169,9 +162,10 @@ async def begin_rounds(
     shut_doors: float = 0.0,
     scenario: str | None = None,
     drawn: int = 8,
+    places: Sequence[str] = ROUNDS,
 ) -> UUID:
     """Start a run of two robots in an office, one on each of its floors."""
-    await keep_office(service, drawn)
+    await keep_office(service, drawn, places)
     request = RunRequest(
         tree="rounds",
         world="building",

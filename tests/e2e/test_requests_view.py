@@ -19,7 +19,7 @@ A_MINUTE_S = 60.0
 async def test_something_is_asked_for_and_followed_until_it_is_done(
     service: Service, open_page: OpenPage
 ) -> None:
-    await open_office_with_fleet(service, "max")
+    await open_office_with_fleet(service, 20.0)
     page = await open_page("/")
     await page.get_by_role("link", name="Requests").click(timeout=LONG_MS)
     await page.get_by_label("What is to be brought").fill("the mail", timeout=LONG_MS)
