@@ -17,7 +17,7 @@ async def test_an_open_site_is_chosen_and_told(service: Service, open_page: Open
     await service.library.scenes.save("small_bench", BENCH)
     await service.library.trees.save("both", BOTH)
     site = await service.sites.open_site(SiteRequest(scene="small_bench", world="tabletop"))
-    name = f"site small_bench ({str(site.id)[:8]})"
+    name = f"site small bench ({str(site.id)[:8]})"
     page = await open_page("/start/both")
     await page.get_by_role("radio", name=f"{name} A tabletop that stays: no run uses it").check()
     for label in ("Speed", "Seed", "Scenario"):
