@@ -139,7 +139,7 @@ class BuildingOrdeal:
     """`minutes`: so long things happen there, by the site's clock; `kills`: how many meanwhile.
 
     `speed`: seconds of the site's clock a second at most, so that there is time for things to
-    happen on any machine. `truth`: what its worlds wrote.
+    happen on any machine. `truth`: what its worlds wrote. `forked`: as `ServiceProcess` has it.
     """
 
     def __init__(
@@ -150,6 +150,8 @@ class BuildingOrdeal:
         kills: int,
         tell: Callable[[str], None] = lambda _: None,
         speed: float | Literal["max"] = "max",
+        *,
+        forked: bool = False,
     ) -> None:
         self._drawn, self._folder, self._tell, self._speed = drawn, folder, tell, speed
         self._chance = Random(drawn.seed + 3)
@@ -165,7 +167,7 @@ class BuildingOrdeal:
         ordeal_world.install(folder / "worlds")
         paths = [str(folder / "worlds"), *(each for each in sys.path if each)]
         self._service = ServiceProcess(
-            folder, PYTHONPATH=os.pathsep.join(paths), **SETTINGS,
+            folder, forked=forked, PYTHONPATH=os.pathsep.join(paths), **SETTINGS,
             **{ordeal_world.TRUTH: str(self.truth)},
         )  # fmt: skip
         self._witness = Witness()

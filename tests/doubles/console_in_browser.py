@@ -19,8 +19,19 @@ COUNT_TONES = """() => {
 }"""
 """Evaluated in a page: from then on `window.tones` counts the tones that it plays."""
 
+NO_WEBGL = """
+const contextOf = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...given) {
+  return kind.startsWith("webgl") ? null : contextOf.call(this, kind, ...given);
+};"""
+"""Begun with in a page: it is in a browser that cannot draw in 3-D."""
+
 OpenPage = Callable[..., Awaitable[Page]]
-"""`await open_page(path, helper=name, **context_options)`: a helper who has signed in."""
+"""`await open_page(path, helper=name, **context_options)`: a helper who has signed in.
+
+Scenes are drawn by software here, which takes more than all else of a page: only where `drawn=True`
+says so.
+"""
 
 
 @dataclass(frozen=True, slots=True)

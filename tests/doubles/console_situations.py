@@ -1,7 +1,7 @@
 """Situations that the console is looked at in: each plays a run, and opens its view."""
 
 import json
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from contextlib import suppress
 from typing import Literal
 from uuid import UUID
@@ -20,6 +20,7 @@ from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.journal.journal import Entry
 from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.run_state import RunStatus
 from mend.server.runtime.steering_views import SteerNode
 from mend.server.sites.requests import SiteRequest
 from mend.sim.building.scene import scene_of
@@ -94,7 +95,7 @@ async def no_runs(_: Service, open_page: OpenPage) -> Page:
 
 async def runs(service: Service, open_page: OpenPage) -> Page:
     await ask(service)
-    await service.journal.append(Entry(events=recorded_events()))
+    await keep_recorded(service)
     page = await open_page("/runs")
     await expect(page.get_by_text("The task is done")).to_be_visible()
     await expect(page.get_by_text("Asks a question")).to_be_visible(timeout=PATIENCE_MS)
@@ -102,14 +103,14 @@ async def runs(service: Service, open_page: OpenPage) -> Page:
 
 
 async def issues(service: Service, open_page: OpenPage) -> Page:
-    await service.journal.append(Entry(events=recorded_events()))
+    await keep_recorded(service)
     page = await open_page("/issues")
     await expect(page.get_by_text("unreachable")).to_be_visible()
     return page
 
 
 async def statistics(service: Service, open_page: OpenPage) -> Page:
-    await service.journal.append(Entry(events=recorded_events()))
+    await keep_recorded(service)
     page = await open_page("/statistics")
     await expect(page.get_by_role("region", name="By part")).to_be_visible()
     return page
@@ -120,6 +121,9 @@ async def live_run(service: Service, open_page: OpenPage) -> Page:
     page = await open_page(f"/runs/{run}")
     await expect(page.get_by_role("link", name="Questions 1")).to_be_visible(timeout=PATIENCE_MS)
     await expect(page.get_by_role("main").get_by_text("Loading …")).to_have_count(0)
+    # What it was like is looked at; the robot need not go on meanwhile.
+    await service.runtime.pause(run)
+    await expect(page.get_by_role("button", name="Resume")).to_be_visible()
     return page
 
 
@@ -131,16 +135,7 @@ async def begin_two_boxes(service: Service, speed: float | Literal["max"] = 1.0)
     return (await service.runtime.start_run(request)).id
 
 
-ROUNDS = {
-    "name": "rounds",
-    "scene": "office",
-    "tree": {
-        "and": [
-            {"behavior": "go_to", "place": place, "name": f"round_{place}"}
-            for place in ("F1-104", "F2-204", "F1-101", "F2-201")
-        ]
-    },
-}
+ROUNDS = ("F1-104", "F2-204", "F1-101", "F2-201")
 
 
 IN_THE_WAY = {
@@ -151,11 +146,13 @@ IN_THE_WAY = {
 }
 
 
-async def keep_office(service: Service, drawn: int = 8) -> None:
+async def keep_office(service: Service, drawn: int = 8, places: Sequence[str] = ROUNDS) -> None:
     """Have an office with two floors and a robot on each, and a task there."""
+    going = [{"behavior": "go_to", "place": each, "name": f"round_{each}"} for each in places]
+    rounds = {"name": "rounds", "scene": "office", "tree": {"and": going}}
     scene = scene_of(Building(random_building(drawn, 2, 6)), "office", 2)
     await service.library.scenes.save("office", scene.model_dump_json(exclude_defaults=True))
-    await service.library.trees.save("rounds", json.dumps(ROUNDS))
+    await service.library.trees.save("rounds", json.dumps(rounds))
     await service.library.scenarios.save("in_the_way", json.dumps(IN_THE_WAY))
 
 
@@ -165,9 +162,10 @@ async def begin_rounds(
     shut_doors: float = 0.0,
     scenario: str | None = None,
     drawn: int = 8,
+    places: Sequence[str] = ROUNDS,
 ) -> UUID:
     """Start a run of two robots in an office, one on each of its floors."""
-    await keep_office(service, drawn)
+    await keep_office(service, drawn, places)
     request = RunRequest(
         tree="rounds",
         world="building",
@@ -192,6 +190,7 @@ async def run_in_building(service: Service, open_page: OpenPage) -> Page:
         await building.click()
     robots = page.get_by_role("list", name="Robots")
     await expect(robots.get_by_text("Asking").first).to_be_visible(timeout=PATIENCE_MS)
+    await service.runtime.pause(run)
     return page
 
 
@@ -234,8 +233,26 @@ async def steered_run(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+STOLEN = {
+    "name": "stolen",
+    "tree": "both",
+    "interventions": [{"at_s": 0.0, "do": {"act": "steal", "object": "red_box"}}],
+    "answers": ["yes"],
+    "answer_delay_s": 1.0,
+    "person": {"delay_s": 1.0},
+}
+
+
+async def keep_recorded(service: Service) -> UUID:
+    """Have a run of the paper's scenario that has ended, once; its id."""
+    events = recorded_events()
+    if not await service.runtime.has_run(events[0].run):
+        await service.journal.append(Entry(events=events))
+    return events[0].run
+
+
 async def past_of_run(service: Service, open_page: OpenPage) -> Page:
-    page = await finished_run(service, open_page)
+    page = await open_page(f"/runs/{await keep_recorded(service)}")
     await page.get_by_role("button", name="Previous fault").click()
     await expect(page.get_by_role("button", name="Copy link")).to_be_visible()
     return page
@@ -255,12 +272,15 @@ async def plotted_run(service: Service, open_page: OpenPage) -> Page:
 
 
 async def finished_run(service: Service, open_page: OpenPage) -> Page:
-    request = RunRequest(tree="eket", world="tabletop", speed="max", scenario="eket_paper")
+    """A box was stolen, which was talked over, and put back."""
+    await service.library.scenes.save("small_bench", BENCH)
+    await service.library.trees.save("both", BOTH)
+    await service.library.scenarios.save("stolen", json.dumps(STOLEN))
+    request = RunRequest(tree="both", world="tabletop", speed="max", scenario="stolen", seed=2)
     run = await service.runtime.start_run(request)
-    page = await open_page("/runs")
-    row = page.get_by_role("listitem").filter(has_text="eket_paper")
-    await expect(row.get_by_text("Finished")).to_be_visible(timeout=PATIENCE_MS)
-    await page.goto(f"/runs/{run.id}")
+    view = await service.runtime.wait_for_end(run.id)
+    assert view.status is RunStatus.FINISHED
+    page = await open_page(f"/runs/{run.id}")
     main = page.get_by_role("main")
     await expect(main.get_by_role("heading", level=1)).to_be_visible(timeout=PATIENCE_MS)
     await expect(main.get_by_text("Loading …")).to_have_count(0, timeout=PATIENCE_MS)
@@ -287,9 +307,10 @@ async def scenes(_: Service, open_page: OpenPage) -> Page:
     return page
 
 
-async def scene_out_of_reach(_: Service, open_page: OpenPage) -> Page:
-    """A part was moved where no robot reaches it."""
-    page = await open_page("/edit_scene/eket")
+async def scene_out_of_reach(service: Service, open_page: OpenPage) -> Page:
+    """A box was moved where no robot reaches it."""
+    await service.library.scenes.save("small_bench", BENCH)
+    page = await open_page("/edit_scene/small_bench")
     await page.get_by_label("Forward x (m)").fill("0.95")
     await page.get_by_label("Forward x (m)").press("Enter")
     mistake = page.locator(".mistake-line").filter(has_text="does not reach (0.950")

@@ -48,15 +48,16 @@ class Findings:
 
 
 class Watcher:
-    """A helper who follows every event, across all lives of the service."""
+    """A helper who follows every event after one, across all lives of the service."""
 
     def __init__(self) -> None:
         self.events: list[ev.Event] = []
+        self.after = 0
         self._news = asyncio.Event()
 
     @property
     def seen(self) -> int:
-        return self.events[-1].seq if self.events else 0
+        return self.events[-1].seq if self.events else self.after
 
     @property
     def open_dialogues(self) -> set[UUID]:
@@ -70,7 +71,7 @@ class Watcher:
         return {each.run for each in self.events if isinstance(each, ev.RunStarted)} - ended
 
     async def follow(self, client: MendClient) -> None:
-        async with client.follow("watcher", after=0) as stream:
+        async with client.follow("watcher", after=self.after) as stream:
             async for message in stream:
                 if not isinstance(message, Snapshot):
                     self.events.append(message)
@@ -91,7 +92,10 @@ class Watcher:
 
 
 class Ordeal:
-    """Keeps runs of `requests` going, kills at random moments of the journal, then looks."""
+    """Keeps runs of `requests` going, kills at random moments of the journal, then looks.
+
+    No other run may go on; those that have ended are no matter of its.
+    """
 
     def __init__(
         self,
@@ -120,6 +124,7 @@ class Ordeal:
     async def _go_through(
         self, kills: int, kill: Callable[[MendClient], Awaitable[int]]
     ) -> Findings:
+        self._watcher.after = self._service.head()
         async with MendClient(self._service.url) as client:
             following = asyncio.create_task(self._watcher.follow(client))
             try:
@@ -186,8 +191,9 @@ class Ordeal:
     async def _look(self, client: MendClient) -> None:
         findings, seen = self._findings, self._watcher.events
         with JournalReader(self._service.journal) as reader:
-            runs = reader.runs()
-            journaled = {each.seq: each for run in runs for each in reader.events(run)}
+            told = [each for run in reader.runs() for each in reader.events(run)]
+        journaled = {each.seq: each for each in told if each.seq > self._watcher.after}
+        runs = {each.run for each in journaled.values()}
         findings.events = len(journaled)
         # What there was before is of no run; a first one that is lost was sent all the same.
         first = min(seq for seq, each in journaled.items() if isinstance(each, ev.RunStarted))

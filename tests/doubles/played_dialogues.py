@@ -24,6 +24,7 @@ from mend.server.runtime.dialogue_events import DialogueEvents
 from mend.server.runtime.dialogue_state import rehearse
 from mend.server.runtime.views import AwaitedHelp, DialogueView, PromptView, UnseenHelpView
 
+USUAL_DEADLINE_S = 60.0
 WIDTH_PX, HEIGHT_PX = 320, 240
 DETECTION = Detection(
     camera="forearm",
@@ -63,9 +64,18 @@ class PlayedDialogues(FakeRuns):
         self._scripts = load_scripts()
         self._played: dict[UUID, Played] = {}
         self._won: dict[UUID, str] = {}
-        self.deadline_s = 60.0
+        self.deadline_s = USUAL_DEADLINE_S
         self.to: str | None = None
         """Whom questions are put to, from now on."""
+
+    async def leave_nothing(self) -> None:
+        """Close whatever is open, so that nothing of it is there for the next test."""
+        for dialogue in [each.dialogue for each in self._dialogues.values()]:
+            if self.dialogue_now(dialogue).status == "open":
+                await self.call(dialogue, "abort")
+        self.photographed.clear()
+        self.deadline_s = USUAL_DEADLINE_S
+        self.to = None
 
     async def open(self, run: UUID, kind: str, part: str = "yellow_bar", **otherwise: Any) -> UUID:
         """A robot detects a fault of `kind`, with a picture and a clip; the dialogue's id.

@@ -7,11 +7,12 @@ import signal
 import socket
 import sys
 import time
-from collections.abc import AsyncIterator, Sequence
-from contextlib import asynccontextmanager
+from collections.abc import AsyncIterator, Iterator, Sequence
+from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
 import psutil
+from forked_mend import MendProcess, start_mend
 
 from mend.server.client import MendClient
 from mend.server.journal.reader import JournalReader
@@ -24,7 +25,10 @@ MEND_SERVE = (str(Path(sys.executable).with_name("mend")), "serve")
 
 
 class ServiceProcess:
-    """`mend serve` on a port and a journal that stay the same over its lives."""
+    """`mend serve` on a port and a journal that stay the same over its lives.
+
+    With `forked` each life is a fork of a process that has loaded Mend.
+    """
 
     def __init__(
         self,
@@ -33,15 +37,17 @@ class ServiceProcess:
         descriptors: int | None = None,
         program: Sequence[str] = MEND_SERVE,
         token: str | None = None,
+        forked: bool = False,
         **environment: str,
     ) -> None:
+        self._forked = forked
         self._folder = folder
         self._descriptors = descriptors
         self._program = program
         self._token = token
         self._environment = environment
         self._port = free_port()
-        self._process: asyncio.subprocess.Process | None = None
+        self._process: MendProcess | None = None
 
     @property
     def url(self) -> str:
@@ -61,7 +67,7 @@ class ServiceProcess:
         return (self._folder / "stderr").read_text()
 
     @property
-    def process(self) -> asyncio.subprocess.Process:
+    def process(self) -> MendProcess:
         """Its latest life."""
         assert self._process is not None, "it was started"
         return self._process
@@ -84,12 +90,28 @@ class ServiceProcess:
             **({} if self._token is None else {"MEND_TOKEN": self._token}),
             **self._environment,
         }
-        with (self._folder / "stderr").open("a") as complaints:
+        with self._outputs() as (nowhere, complaints):
+            if self._forked:
+                self._process = await start_mend(
+                    "serve",
+                    env=environment,
+                    stdout=nowhere,
+                    stderr=complaints,
+                    descriptors=self._descriptors,
+                )
+                return
             self._process = await asyncio.create_subprocess_exec(
                 *self._program,
-                env=environment, stdout=asyncio.subprocess.DEVNULL, stderr=complaints,
+                env=environment, stdout=nowhere, stderr=complaints,
                 preexec_fn=self._bound,
             )  # fmt: skip
+
+    @contextmanager
+    def _outputs(self) -> Iterator[tuple[int, int]]:
+        """The descriptors of its stdout and stderr."""
+        complaining = (self._folder / "stderr").open("a")
+        with Path(os.devnull).open("w") as nowhere, complaining as complaints:
+            yield nowhere.fileno(), complaints.fileno()
 
     def _bound(self) -> None:
         """In the new process: it may have only so many descriptors."""
@@ -167,10 +189,10 @@ class ServiceProcess:
 
 @asynccontextmanager
 async def service_process(
-    folder: Path, *, descriptors: int | None = None, **environment: str
+    folder: Path, *, descriptors: int | None = None, forked: bool = False, **environment: str
 ) -> AsyncIterator[ServiceProcess]:
     """A service that runs, until the end of the block; `environment` has more variables for it."""
-    service = ServiceProcess(folder, descriptors=descriptors, **environment)
+    service = ServiceProcess(folder, descriptors=descriptors, forked=forked, **environment)
     await service.start()
     try:
         yield service

@@ -5,6 +5,7 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from fake_microphone import Person
 from playwright.async_api import Page, WebSocket
 
 PATIENCE_S = 60.0
@@ -15,19 +16,21 @@ HARMLESS = (None, "help", "repeat")
 
 
 class SpokenConsole:
-    """A page in a browser of `fake_microphone`, made before the page goes anywhere."""
+    """A page in a person's browser, made before the page goes anywhere."""
 
-    def __init__(self, page: Page) -> None:
+    def __init__(self, page: Page, person: Person) -> None:
         self.page = page
+        self.person = person
         self._messages: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
         page.on("websocket", self._listen)
 
-    async def speak(self, meant: str) -> None:
+    async def speak(self, words: str, meant: str) -> None:
         """Open the microphone, into which the words are said, until they are understood.
 
         What was not understood, or taken for a wish that changes nothing, is said again, as a
         person would: on a busy machine the beginning of the words may be lost.
         """
+        self.person.will_say(words)
         microphone = self.page.get_by_role("button", name="Listen and speak")
         for _ in range(TRIES):
             if await microphone.get_attribute("aria-pressed") == "true":

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import pytest_asyncio
 from bare_chromium import CHROMIUM, launch
-from console_in_browser import TOKEN, OpenPage, Stage
+from console_in_browser import NO_WEBGL, TOKEN, OpenPage, Stage
 from played_dialogues import PlayedDialogues
 from playwright.async_api import (
     Browser,
@@ -118,14 +118,62 @@ async def stage(browser: Browser) -> AsyncIterator[Stage]:
         yield Stage(service.runs, run.id, open_page)
 
 
+@pytest_asyncio.fixture(scope="module", loop_scope="session")
+async def played(browser: Browser) -> AsyncIterator[tuple[PlayedDialogues, OpenPage]]:
+    """One service for all stages of a module, and who opens each helper's page at it once."""
+    pages: dict[str, Page] = {}
+    async with (
+        serving(runs_in=PlayedDialogues, token=TOKEN) as service,
+        _opening_pages(browser, service.url) as open_page,
+    ):
+
+        async def reopen(path: str = "/", helper: str = "anna") -> Page:
+            page = pages.get(helper)
+            if page is None:
+                pages[helper] = page = await open_page(path, helper)
+            else:
+                await page.goto(path)
+                await page.get_by_role("status").filter(has_text="Connected").wait_for()
+            return page
+
+        assert isinstance(service.runs, PlayedDialogues)
+        yield service.runs, reopen
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def lasting_stage(
+    played: tuple[PlayedDialogues, OpenPage],
+) -> AsyncIterator[Stage]:
+    """As `stage`, on pages that others were at: for who leaves their clock and connection alone."""
+    runs, reopen = played
+    pages: list[Page] = []
+
+    async def open_page(path: str = "/", helper: str = "anna") -> Page:
+        pages.append(await reopen(path, helper))
+        return pages[-1]
+
+    run = await runs.start_run(RunRequest(tree="eket", world="tabletop"))
+    yield Stage(runs, run.id, open_page)
+    for page in pages:
+        # Nothing runs there, and nobody is at it any more.
+        await page.goto("/icon.svg")
+        await page.evaluate("() => { localStorage.clear(); sessionStorage.clear(); }")
+    await runs.leave_nothing()
+    await runs.abort(run.id)
+
+
 @contextlib.asynccontextmanager
 async def _opening_pages(browser: Browser, url: str) -> AsyncIterator[OpenPage]:
     mistakes: list[str] = []
     contexts: list[BrowserContext] = []
 
-    async def open_page(path: str = "/", helper: str = "anna", **options: object) -> Page:
+    async def open_page(
+        path: str = "/", helper: str = "anna", *, drawn: bool = False, **options: object
+    ) -> Page:
         context = await browser.new_context(base_url=url, **options)
         contexts.append(context)
+        if not drawn:
+            await context.add_init_script(NO_WEBGL)
         signed_in = await context.request.post("/api/session", data={"token": TOKEN})
         assert signed_in.status == 204
         await context.add_init_script(f"localStorage.setItem('mend.helper', '\"{helper}\"')")

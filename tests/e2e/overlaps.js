@@ -21,13 +21,25 @@
   const isSeen = ({ left, top, right, bottom }) =>
     right - left > TOLERANCE_PX && bottom - top > TOLERANCE_PX;
 
+  const styles = new Map();
+  const styleOf = (element) => {
+    let style = styles.get(element);
+    if (style === undefined) {
+      // What is computed of a live style is computed anew at each look.
+      const { position, overflow, pointerEvents } = getComputedStyle(element);
+      style = { position, cuts: overflow !== "visible", pointerEvents };
+      styles.set(element, style);
+    }
+    return style;
+  };
+
   /** The part of a box that no ancestor cuts off. */
   const shownPart = (element, box) => {
     let shown = box;
     for (let each = element; each !== null; each = each.parentElement) {
-      const style = getComputedStyle(each);
-      if (style.position === "fixed") break;
-      if (each !== element && style.overflow !== "visible") shown = meet(shown, each.getBoundingClientRect());
+      const { position, cuts } = styleOf(each);
+      if (position === "fixed") break;
+      if (each !== element && cuts) shown = meet(shown, each.getBoundingClientRect());
     }
     return shown;
   };
@@ -59,17 +71,17 @@
   const together = (a, b) => a.closest(WHOLES) !== null && a.closest(WHOLES) === b.closest(WHOLES);
   const found = [];
   for (const [index, a] of boxes.entries()) {
-    for (const b of boxes.slice(index + 1)) {
-      if (nested(a.element, b.element) || together(a.element, b.element)) continue;
+    for (let other = index + 1; other < boxes.length; other++) {
+      const b = boxes[other];
+      // Few pairs share a spot, and to see that they do not takes the least.
       const both = meet(a.box, b.box);
-      if (isSeen(both)) {
-        found.push(`“${a.words}” and “${b.words}” share ${Math.round(both.left)}, ${Math.round(both.top)}`);
-      }
+      if (!isSeen(both) || nested(a.element, b.element) || together(a.element, b.element)) continue;
+      found.push(`“${a.words}” and “${b.words}” share ${Math.round(both.left)}, ${Math.round(both.top)}`);
     }
   }
   for (const { element, box, words } of boxes) {
     // In a drawing a thing's own shape is over its words, to be clicked on.
-    if (element.closest("svg") !== null || getComputedStyle(element).pointerEvents === "none") continue;
+    if (element.closest("svg") !== null || styleOf(element).pointerEvents === "none") continue;
     const [x, y] = [(box.left + box.right) / 2, (box.top + box.bottom) / 2];
     const top = document.elementFromPoint(x, y);
     if (top === null || nested(top, element) || together(top, element)) continue;

@@ -106,6 +106,7 @@ async def test_question_shows_where_the_robot_is_that_asks(
     robots = page.get_by_role("list", name="Robots")
     await expect(page.get_by_role("button", name="YES")).to_be_visible(timeout=LONG_MS)
     await expect(robots.get_by_text("Asking").first).to_be_visible(timeout=LONG_MS)
+    await service.runtime.pause(run)
     await page.goto("/")
     place = page.locator(".place-map")
     await expect(place.locator("figcaption")).to_have_text(
@@ -121,8 +122,10 @@ async def test_question_shows_where_the_robot_is_that_asks(
         assert await violations(page, rules) == [], theme
 
 
-async def test_past_is_shown_as_it_was_recorded(service: Service, open_page: OpenPage) -> None:
-    run = await begin_rounds(service, speed="max")
+async def test_past_is_shown_as_it_was_recorded_and_nothing_of_what_was_not(
+    service: Service, open_page: OpenPage
+) -> None:
+    run = await begin_rounds(service, speed="max", places=("F1-104", "F2-204"))
     await service.runtime.wait_for_end(run)
     page = await open_page(f"/runs/{run}", viewport=WIDE)
     await expect(robot(page, "robot1")).to_be_visible(timeout=LONG_MS)
@@ -130,14 +133,6 @@ async def test_past_is_shown_as_it_was_recorded(service: Service, open_page: Ope
     await page.get_by_label("Moment of the run").fill("0.5")
     await expect(row(page, "ROBOT1")).not_to_have_text(at_the_end)
     await expect(row(page, "ROBOT1")).to_contain_text("charger1")
-
-
-async def test_nothing_is_shown_of_a_moment_that_was_not_recorded(
-    service: Service, open_page: OpenPage
-) -> None:
-    run = await begin_rounds(service, speed="max")
-    await service.runtime.wait_for_end(run)
-    page = await open_page("/runs", viewport=WIDE)
     # What the socket tells is the last of the run, and says nothing of the moment that is shown.
     await page.route("**/api/runs/*/poses?*", lambda route: route.fulfill(body=b""))
     await page.goto(f"/runs/{run}")

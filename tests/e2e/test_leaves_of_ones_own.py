@@ -26,7 +26,7 @@ async def test_what_somebody_takes_is_done_when_it_is_seen(
     service: Service, open_page: OpenPage
 ) -> None:
     run = await begin_two_boxes(service)
-    page = await open_page(f"/runs/{run}")
+    page = await open_page(f"/runs/{run}", drawn=True)
     log = page.get_by_role("log")
     await blue_box(page).click()
     await page.get_by_role("button", name="I do this: blue box").click()

@@ -49,7 +49,10 @@ async def test_every_dialogue_is_answered_by_button(stage: Stage) -> None:
 
 
 async def test_every_kind_of_answer_is_given_by_key(stage: Stage) -> None:
-    await walk(stage, every_kind_of_answer(SCRIPTS, issue_of("dropped")), by_key)
+    every_kind = every_kind_of_answer(SCRIPTS, issue_of("dropped"))
+    # The longest has yes and no, final and not, to an opening and after a look.
+    longest = max(every_kind, key=lambda each: len(each[1]))
+    await walk(stage, sample([longest], every_kind), by_key)
 
 
 def a_way_through_each() -> list[tuple[str, Path]]:

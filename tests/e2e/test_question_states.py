@@ -94,16 +94,16 @@ async def test_held_answer_is_dropped_when_somebody_else_answers(stage: Stage) -
     await expect(page.get_by_text("The robot watches for the yellow bar")).to_be_visible()
 
 
-async def test_card_closes_by_itself_and_says_why(stage: Stage) -> None:
-    page = await stage.open_page()
+async def test_card_closes_by_itself_and_says_why(lasting_stage: Stage) -> None:
+    page = await lasting_stage.open_page()
     for call, words in (
         ("put_right:in_reach:appeared", "I see the yellow bar within my reach now"),
         ("silence", "no help was seen"),
         ("abort", "the robot has stopped this task"),
     ):
-        dialogue = await stage.runs.open(stage.run, "dropped")
+        dialogue = await lasting_stage.runs.open(lasting_stage.run, "dropped")
         await expect(page.locator(".answer.yes")).to_be_visible()
-        await stage.runs.call(dialogue, call)
+        await lasting_stage.runs.call(dialogue, call)
         told = page.get_by_role("status", name="What became of questions")
         await expect(told).to_contain_text(words)
         await expect(told).to_contain_text("yellow bar")
@@ -112,20 +112,20 @@ async def test_card_closes_by_itself_and_says_why(stage: Stage) -> None:
         await expect(told).to_be_empty()
 
 
-async def test_more_time_moves_the_deadline(stage: Stage) -> None:
-    page = await stage.open_page()
-    stage.runs.deadline_s = 24.0
-    await stage.runs.open(stage.run, "dropped")
+async def test_more_time_moves_the_deadline(lasting_stage: Stage) -> None:
+    page = await lasting_stage.open_page()
+    lasting_stage.runs.deadline_s = 24.0
+    await lasting_stage.runs.open(lasting_stage.run, "dropped")
     await expect(page.get_by_text("Less than 25 seconds are left")).to_be_attached()
     await page.get_by_role("button", name="More time").click()
     await expect(page.get_by_role("timer")).to_contain_text(re.compile(r"0:[345]\d"))
     await expect(page.get_by_text("Less than 25 seconds are left")).not_to_be_attached()
 
 
-async def test_questions_queue_and_another_one_can_be_chosen(stage: Stage) -> None:
-    page = await stage.open_page()
-    await stage.runs.open(stage.run, "dropped", "yellow_bar")
-    await stage.runs.open(stage.run, "missed", "blue_leg")
+async def test_questions_queue_and_another_one_can_be_chosen(lasting_stage: Stage) -> None:
+    page = await lasting_stage.open_page()
+    await lasting_stage.runs.open(lasting_stage.run, "dropped", "yellow_bar")
+    await lasting_stage.runs.open(lasting_stage.run, "missed", "blue_leg")
     await expect(page).to_have_title("(2) Mend")
     await expect(page.get_by_role("heading", name="I lost hold of the yellow bar")).to_be_visible()
     await page.get_by_role("button", name="the blue leg is not in it").click()
@@ -133,21 +133,21 @@ async def test_questions_queue_and_another_one_can_be_chosen(stage: Stage) -> No
     await expect(page.get_by_role("heading", name="I lost hold of the yellow bar")).to_be_hidden()
 
 
-async def test_other_views_lead_to_the_question(stage: Stage) -> None:
-    page = await stage.open_page("/settings")
-    await stage.runs.open(stage.run, "dropped")
+async def test_other_views_lead_to_the_question(lasting_stage: Stage) -> None:
+    page = await lasting_stage.open_page("/settings")
+    await lasting_stage.runs.open(lasting_stage.run, "dropped")
     said = page.get_by_role("alert").filter(has_text="Will you put it back on the table?")
     await expect(said).to_be_attached()
     await page.get_by_role("link", name="Answer").click()
     await expect(page.get_by_role("heading", name="I lost hold of the yellow bar")).to_be_visible()
 
 
-async def test_keys_can_be_changed_and_switched_off(stage: Stage) -> None:
-    page = await stage.open_page("/settings")
+async def test_keys_can_be_changed_and_switched_off(lasting_stage: Stage) -> None:
+    page = await lasting_stage.open_page("/settings")
     await page.get_by_label("Yes", exact=True).fill("j")
     await page.get_by_label("Yes", exact=True).press("Tab")
     await page.get_by_role("navigation").get_by_role("link", name="Questions").click()
-    dialogue = await stage.runs.open(stage.run, "dropped")
+    dialogue = await lasting_stage.runs.open(lasting_stage.run, "dropped")
     await expect(page.locator(".answer.yes")).to_be_enabled()
     await page.keyboard.press("y")
     await page.keyboard.press("j")
@@ -155,17 +155,17 @@ async def test_keys_can_be_changed_and_switched_off(stage: Stage) -> None:
     await page.get_by_role("link", name="anna").click()
     await page.get_by_label("Answer with single keys").uncheck()
     await page.get_by_role("navigation").get_by_role("link", name="Questions").click()
-    await stage.runs.see(dialogue, fulfilled=False)
+    await lasting_stage.runs.see(dialogue, fulfilled=False)
     await expect(page.locator(".answer.yes")).to_be_enabled()
     await page.keyboard.press("j")
     await page.keyboard.press("n")
     await page.locator(".answer.no").focus()
-    assert stage.runs.dialogue_now(dialogue).awaiting == "answer"
+    assert lasting_stage.runs.dialogue_now(dialogue).awaiting == "answer"
 
 
-async def test_seconds_before_the_fault_can_be_scrubbed_by_key(stage: Stage) -> None:
-    page = await stage.open_page()
-    await stage.runs.open(stage.run, "dropped")
+async def test_seconds_before_the_fault_can_be_scrubbed_by_key(lasting_stage: Stage) -> None:
+    page = await lasting_stage.open_page()
+    await lasting_stage.runs.open(lasting_stage.run, "dropped")
     slider = page.get_by_role("slider", name="Moment before the fault")
     picture = page.get_by_role("img", name="camera saw")
     await expect(slider).to_have_attribute("aria-valuetext", "the moment of the fault")
@@ -194,10 +194,12 @@ async def test_phone_shows_question_picture_and_answers_at_once(stage: Stage) ->
         assert await page.evaluate("document.documentElement.scrollWidth") <= width
 
 
-async def test_whoever_promised_help_sees_how_much_longer_it_is_waited_for(stage: Stage) -> None:
-    page = await stage.open_page()
-    dialogue = await stage.runs.open(stage.run, "dropped")
+async def test_whoever_promised_help_sees_how_much_longer_it_is_waited_for(
+    lasting_stage: Stage,
+) -> None:
+    page = await lasting_stage.open_page()
+    dialogue = await lasting_stage.runs.open(lasting_stage.run, "dropped")
     await page.locator(".answer.yes").click()
     await expect(page.get_by_text(re.compile(r"It gives you [01]:\d\d more\."))).to_be_visible()
-    await stage.runs.see(dialogue)
+    await lasting_stage.runs.see(dialogue)
     await expect(page.get_by_text("It gives you")).to_have_count(0)

@@ -11,28 +11,30 @@ pytestmark = pytest.mark.asyncio(loop_scope="session")
 HELD_MS = 3_100
 
 
-async def test_an_entry_tells_robot_task_place_time_and_attempt(stage: Stage) -> None:
-    page = await stage.open_page()
-    await stage.runs.open(stage.run, "dropped", "yellow_bar")
-    await stage.runs.open(stage.run, "missed", "blue_leg")
+async def test_an_entry_tells_robot_task_place_time_and_attempt(lasting_stage: Stage) -> None:
+    page = await lasting_stage.open_page()
+    await lasting_stage.runs.open(lasting_stage.run, "dropped", "yellow_bar")
+    await lasting_stage.runs.open(lasting_stage.run, "missed", "blue_leg")
     entry = page.locator(".queue-item", has_text="the blue leg is not in it")
     for told in ("PR2", "eket", "To blue leg place.", "Attempt 1 of 3", re.compile(r"[01]:\d\d")):
         await expect(entry).to_contain_text(told)
 
 
-async def test_what_expires_first_stands_first(stage: Stage) -> None:
-    page = await stage.open_page()
-    await stage.runs.open(stage.run, "dropped", "yellow_bar")
-    stage.runs.deadline_s = 30.0
-    await stage.runs.open(stage.run, "missed", "blue_leg")
+async def test_what_expires_first_stands_first(lasting_stage: Stage) -> None:
+    page = await lasting_stage.open_page()
+    await lasting_stage.runs.open(lasting_stage.run, "dropped", "yellow_bar")
+    lasting_stage.runs.deadline_s = 30.0
+    await lasting_stage.runs.open(lasting_stage.run, "missed", "blue_leg")
     await expect(page.locator(".queue-item")).to_contain_text(["blue leg", "yellow bar"])
 
 
-async def test_the_same_question_about_several_parts_is_one_entry_that_opens(stage: Stage) -> None:
-    page = await stage.open_page()
-    await stage.runs.open(stage.run, "missed", "blue_leg")
+async def test_the_same_question_about_several_parts_is_one_entry_that_opens(
+    lasting_stage: Stage,
+) -> None:
+    page = await lasting_stage.open_page()
+    await lasting_stage.runs.open(lasting_stage.run, "missed", "blue_leg")
     for part in ("yellow_bar", "pink_bar"):
-        await stage.runs.open(stage.run, "dropped", part)
+        await lasting_stage.runs.open(lasting_stage.run, "dropped", part)
     batch = page.locator(".queue-batch")
     await expect(batch.locator("summary")).to_contain_text("2× Put it back on the table")
     await expect(batch.locator(".queue-item").first).to_be_hidden()

@@ -1,25 +1,41 @@
 """People ask robots of a building for something in the console, and follow it to its end."""
 
 import time
+from collections.abc import Awaitable, Callable
+from uuid import UUID
 
 import pytest
+import pytest_asyncio
 from console_in_browser import OpenPage
 from office_with_fleet import open_office_with_fleet
-from playwright.async_api import expect
+from playwright.async_api import Page, expect
 
 from mend.server.composition import Service
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
+Reopen = Callable[[str], Awaitable[Page]]
+
 LONG_MS = 60_000
 A_MINUTE_S = 60.0
+
+
+@pytest_asyncio.fixture(scope="module", loop_scope="session")
+async def lasting_office(lasting_service: Service) -> UUID:
+    """An office with two floors and one robot: whoever asks it for more does not mind the rest."""
+    return await open_office_with_fleet(lasting_service, floors=2)
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def office(lasting_office: UUID, reopen: Reopen) -> Reopen:  # noqa: ARG001
+    return reopen
 
 
 async def test_something_is_asked_for_and_followed_until_it_is_done(
     service: Service, open_page: OpenPage
 ) -> None:
-    await open_office_with_fleet(service, "max")
+    await open_office_with_fleet(service, 20.0)
     page = await open_page("/")
     await page.get_by_role("link", name="Requests").click(timeout=LONG_MS)
     await page.get_by_label("What is to be brought").fill("the mail", timeout=LONG_MS)
@@ -42,11 +58,8 @@ async def test_what_is_missing_is_said_and_nothing_is_asked_for(
     await expect(page.get_by_text("Nothing is asked for just now.")).to_be_visible()
 
 
-async def test_what_cannot_be_met_in_time_is_offered_for_when_it_can(
-    service: Service, open_page: OpenPage
-) -> None:
-    await open_office_with_fleet(service)
-    page = await open_page("/requests")
+async def test_what_cannot_be_met_in_time_is_offered_for_when_it_can(office: Reopen) -> None:
+    page = await office("/requests")
     await page.get_by_label("Tell something").check(timeout=LONG_MS)
     await page.get_by_label("What is to be told").fill("Lunch is ready.")
     await page.get_by_label("Where").fill("106")
@@ -60,11 +73,8 @@ async def test_what_cannot_be_met_in_time_is_offered_for_when_it_can(
     await expect(open_ones).to_contain_text("Tell “Lunch is ready.” at F1/106", timeout=LONG_MS)
 
 
-async def test_a_newcomer_asks_in_words_and_follows_it(
-    service: Service, open_page: OpenPage
-) -> None:
-    await open_office_with_fleet(service, floors=2)
-    page = await open_page("/")
+async def test_a_newcomer_asks_in_words_and_follows_it(office: Reopen) -> None:
+    page = await office("/")
     began_s = time.monotonic()
     await page.get_by_role("link", name="Requests").click(timeout=LONG_MS)
     words = page.get_by_label("Say it in words")
@@ -84,20 +94,16 @@ async def test_a_newcomer_asks_in_words_and_follows_it(
     assert time.monotonic() - began_s < A_MINUTE_S
 
 
-async def test_a_place_that_is_not_there_is_said_to_be_none(
-    service: Service, open_page: OpenPage
-) -> None:
-    await open_office_with_fleet(service, floors=2)
-    page = await open_page("/requests")
+async def test_a_place_that_is_not_there_is_said_to_be_none(office: Reopen) -> None:
+    page = await office("/requests")
     await page.get_by_label("Have a robot come").check(timeout=LONG_MS)
     await page.get_by_label("Where").fill("999")
     await page.get_by_role("button", name="Ask for it", exact=True).click()
     await expect(page.get_by_role("alert").filter(has_text="no place “999”")).to_be_visible()
 
 
-async def test_what_is_no_longer_wanted_is_cancelled(service: Service, open_page: OpenPage) -> None:
-    await open_office_with_fleet(service)
-    page = await open_page("/requests")
+async def test_what_is_no_longer_wanted_is_cancelled(office: Reopen) -> None:
+    page = await office("/requests")
     await page.get_by_label("Have a robot come").check(timeout=LONG_MS)
     await page.get_by_label("Where").fill("F1 106")
     await page.get_by_role("button", name="Ask for it", exact=True).click()

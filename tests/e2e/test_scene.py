@@ -1,18 +1,15 @@
 """The run's scene in 3-D: it draws, it moves, and a person can intervene in it."""
 
 import math
-from collections.abc import AsyncIterator
 from uuid import UUID
 
 import cv2
 import numpy as np
 import pytest
-import pytest_asyncio
-from bare_chromium import launch
-from console_in_browser import TOKEN, OpenPage
+from console_in_browser import OpenPage
 from console_situations import begin_two_boxes
 from numpy.typing import NDArray
-from playwright.async_api import Browser, Locator, Page, async_playwright, expect
+from playwright.async_api import Locator, Page, expect
 
 from mend.server.composition import Service
 from mend.server.runtime.requests import RunRequest
@@ -91,11 +88,11 @@ async def raised_issue(service: Service, run: UUID, page: Page) -> None:
     assert any('"type":"issue_raised"' in each.text for each in events)
 
 
-async def test_scene_draws_the_parts_in_their_colours(
+async def test_scene_draws_the_parts_in_their_colours_and_moves_what_is_held(
     service: Service, open_page: OpenPage
 ) -> None:
-    run = await start(service, 0.5)
-    page = await open_page(f"/runs/{run}")
+    run = await start(service, 1.0)
+    page = await open_page(f"/runs/{run}", drawn=True)
     canvas = await drawn_canvas(page)
     names = page.get_by_role("button", name="Names")
     await names.click()
@@ -106,27 +103,29 @@ async def test_scene_draws_the_parts_in_their_colours(
     picture = await pixels(canvas)
     assert picture.std() > 8
     assert orange_pixels(picture) > 100
-
-
-async def test_held_part_moves_in_the_picture(service: Service, open_page: OpenPage) -> None:
-    run = await start(service, 1.0)
-    page = await open_page(f"/runs/{run}")
-    await drawn_canvas(page)
-    await page.get_by_role("button", name="Names").click()
+    await names.click()
     held = page.locator(".scene-name.held")
     await expect(held.locator("span")).to_be_visible(timeout=LONG_MS)
     name = await held.inner_text()
     await wait_for_motion(page, name, await place_of_name(page, name))
 
 
-async def test_part_is_stolen_by_a_click_on_it(service: Service, open_page: OpenPage) -> None:
+async def asked_run(service: Service, page: Page) -> UUID:
+    """A run whose robot waits for an answer, and moves no part however long the page draws."""
     run = await start(service, 2.0)
-    # However long the page takes to draw: a robot that waits for an answer moves no part.
     await service.runtime.intervene(
         run, Intervention.model_validate({"act": "steal", "object": "green_leg"})
     )
-    page = await open_page(f"/runs/{run}")
+    await page.goto(f"/runs/{run}")
     await raised_issue(service, run, page)
+    return run
+
+
+async def test_parts_are_stolen_and_moved_by_clicks_in_the_scene(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await open_page("/settings", drawn=True)
+    await asked_run(service, page)
     canvas = await drawn_canvas(page)
     await page.get_by_role("button", name="Names").click()
     x, y = await place_of_name(page, LATE)
@@ -138,13 +137,23 @@ async def test_part_is_stolen_by_a_click_on_it(service: Service, open_page: Open
     )
     await open_list(page)
     await expect(page.locator(".scene-row", has_text=LATE)).to_contain_text("taken away")
+    before = await place_of_name(page, "orange top")
+    await page.get_by_role("button", name="Intervene: orange top").click()
+    await page.get_by_role("menuitem", name="Move").click()
+    box = await canvas.bounding_box()
+    assert box is not None
+    # The near part of the table is in the lower middle of the picture, and free.
+    await canvas.click(position={"x": 0.5 * box["width"], "y": 0.6 * box["height"]})
+    await expect(page.locator(".scene-note")).to_have_text("The orange top is moved.")
+    await wait_for_motion(page, "orange top", before)
 
 
-async def test_part_is_stolen_from_the_list_with_keys(
+async def test_the_list_below_the_scene_does_it_all_with_keys_and_says_what_is_refused(
     service: Service, open_page: OpenPage
 ) -> None:
-    run = await start(service, 4.0)
-    page = await open_page(f"/runs/{run}")
+    page = await open_page("/settings", drawn=True)
+    # A robot that waits for an answer closes its gripper on nothing that is held out to it.
+    await asked_run(service, page)
     opens = page.get_by_role("button", name="Objects as a list")
     await opens.focus(timeout=LONG_MS)
     await page.keyboard.press("Enter")
@@ -159,56 +168,20 @@ async def test_part_is_stolen_from_the_list_with_keys(
     await expect(page.get_by_role("menuitem", name="Steal")).to_be_focused()
     await page.keyboard.press("Enter")
     await expect(page.locator(".scene-row", has_text=LATE)).to_contain_text("taken away")
-    await raised_issue(service, run, page)
-
-
-async def test_refused_intervention_says_why(service: Service, open_page: OpenPage) -> None:
-    run = await start(service, 0.5)
-    # A robot that waits for an answer closes its gripper on nothing that is held out to it.
-    await service.runtime.intervene(
-        run, Intervention.model_validate({"act": "steal", "object": "green_leg"})
-    )
-    page = await open_page(f"/runs/{run}")
-    await raised_issue(service, run, page)
-    await open_list(page)
-    await page.get_by_role("button", name=f"Intervene: {LATE}").click()
-    await page.get_by_role("menuitem", name="Hand over").click()
-    await expect(page.locator(".scene-note")).to_contain_text("held out")
-    await page.get_by_role("button", name="Intervene: orange top").click()
-    await page.get_by_role("menuitem", name="Hand over").click()
-    await expect(page.locator(".scene-note")).to_contain_text("already")
-
-
-async def test_arm_is_blocked_from_the_list(service: Service, open_page: OpenPage) -> None:
-    run = await start(service, 0.5)
-    page = await open_page(f"/runs/{run}")
-    await open_list(page)
+    note = page.locator(".scene-note")
+    for part, said in (("purple top", "held out"), ("orange top", "already")):
+        await page.get_by_role("button", name=f"Intervene: {part}").click()
+        await page.get_by_role("menuitem", name="Hand over").click()
+        await expect(note).to_contain_text(said)
     await page.get_by_role("button", name="Intervene: the arm’s way").click()
     await page.get_by_role("menuitem", name="Block").click()
     await expect(page.locator(".scene-row", has_text="arm’s way")).to_contain_text("blocked")
 
 
-async def test_part_is_moved_by_a_click_on_the_table(service: Service, open_page: OpenPage) -> None:
-    run = await start(service, 0.5)
-    page = await open_page(f"/runs/{run}")
-    canvas = await drawn_canvas(page)
-    await open_list(page)
-    await page.get_by_role("button", name="Names").click()
-    before = await place_of_name(page, "orange top")
-    await page.get_by_role("button", name="Intervene: orange top").click()
-    await page.get_by_role("menuitem", name="Move").click()
-    box = await canvas.bounding_box()
-    assert box is not None
-    # The near part of the table is in the lower middle of the picture, and free.
-    await canvas.click(position={"x": 0.5 * box["width"], "y": 0.6 * box["height"]})
-    await expect(page.locator(".scene-note")).to_have_text("The orange top is moved.")
-    await wait_for_motion(page, "orange top", before)
-
-
 async def test_replay_shows_where_everything_was(service: Service, open_page: OpenPage) -> None:
     run = await begin_two_boxes(service, "max")
     await service.runtime.wait_for_end(run)
-    page = await open_page(f"/runs/{run}")
+    page = await open_page(f"/runs/{run}", drawn=True)
     await expect(page.get_by_text("The end", exact=True)).to_be_visible(timeout=LONG_MS)
     await drawn_canvas(page)
     await page.get_by_role("button", name="Names").click()
@@ -220,22 +193,11 @@ async def test_replay_shows_where_everything_was(service: Service, open_page: Op
     await expect(page.get_by_role("button", name="Intervene: red box")).to_have_count(0)
 
 
-@pytest_asyncio.fixture(loop_scope="session")
-async def browser_without_webgl() -> AsyncIterator[Browser]:
-    async with async_playwright() as playwright:
-        browser = await launch(playwright, "--disable-gpu", "--disable-webgl", "--disable-3d-apis")
-        yield browser
-        await browser.close()
-
-
 async def test_without_webgl_the_cameras_and_the_list_remain(
-    service: Service, browser_without_webgl: Browser
+    service: Service, open_page: OpenPage
 ) -> None:
     run = await start(service, 0.5)
-    page = await browser_without_webgl.new_page(base_url=service.url)
-    await page.request.post("/api/session", data={"token": TOKEN})
-    await page.add_init_script("localStorage.setItem('mend.helper', '\"anna\"')")
-    await page.goto(f"/runs/{run}")
+    page = await open_page(f"/runs/{run}", drawn=False)
     await expect(page.get_by_text("cannot draw in 3-D")).to_be_visible(timeout=LONG_MS)
     # Pictures are asked for only while they can be seen.
     await page.locator(".cameras").scroll_into_view_if_needed()

@@ -48,7 +48,7 @@ async def spoken(tmp_path: Path) -> AsyncIterator[Spoken]:
                 serving(speech, runs_in=PlayedDialogues, token=TOKEN)
             )
             playwright = await stack.enter_async_context(async_playwright())
-            browser = await launch_speaking(playwright, words, tmp_path, again=True)
+            browser = (await launch_speaking(playwright, words, tmp_path, again=True)).browser
             stack.push_async_callback(browser.close)
             context = await browser.new_context(base_url=service.url)
             await context.request.post("/api/session", data={"token": TOKEN})

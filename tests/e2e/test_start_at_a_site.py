@@ -3,6 +3,7 @@
 import pytest
 from console_in_browser import OpenPage
 from playwright.async_api import expect
+from two_boxes import BENCH, BOTH
 
 from mend.server.composition import Service
 from mend.server.journal.run_index import RunPage
@@ -13,9 +14,11 @@ pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 
 async def test_an_open_site_is_chosen_and_told(service: Service, open_page: OpenPage) -> None:
-    site = await service.sites.open_site(SiteRequest(scene="kit", world="tabletop", speed="max"))
-    name = f"site kit ({str(site.id)[:8]})"
-    page = await open_page("/start/kit")
+    await service.library.scenes.save("small_bench", BENCH)
+    await service.library.trees.save("both", BOTH)
+    site = await service.sites.open_site(SiteRequest(scene="small_bench", world="tabletop"))
+    name = f"site small bench ({str(site.id)[:8]})"
+    page = await open_page("/start/both")
     await page.get_by_role("radio", name=f"{name} A tabletop that stays: no run uses it").check()
     for label in ("Speed", "Seed", "Scenario"):
         await expect(page.get_by_label(label, exact=True)).to_have_count(0)

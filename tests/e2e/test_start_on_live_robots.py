@@ -9,11 +9,18 @@ from playwright.async_api import expect
 
 from mend.server.composition import Service
 from mend.server.journal.run_index import RunPage
-from mend.tasks.library import TREES
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
+TOGETHER = """
+name: together
+scene: kit_for_two
+tree:
+  and:
+    - {behavior: pick_and_place, object: bolt_1, place: bolt_1}
+    - {behavior: pick_and_place, object: nut_1, place: nut_1}
+"""
 EXAMPLES = Path(__file__).parents[2] / "examples" / "two_arms"
 
 
@@ -36,9 +43,7 @@ async def test_who_stands_where_in_the_scene_is_asked(
 ) -> None:
     scene = (EXAMPLES / "kit_for_two.yaml").read_text()
     await service.library.scenes.save("kit_for_two", scene)
-    tree = TREES.read("kit").replace("name: kit\n", "name: together\n")
-    tree = tree.replace("scene: kit\n", "scene: kit_for_two\n")
-    await service.library.trees.save("together", tree)
+    await service.library.trees.save("together", TOGETHER)
     async with (
         gated_robot(service.robots_url, TOKEN, "one") as one,
         gated_robot(service.robots_url, TOKEN, "two") as two,

@@ -1,6 +1,11 @@
 """Somebody stands at a robot's touch screen, asks it for something, and follows that."""
 
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from uuid import UUID
+
 import pytest
+import pytest_asyncio
 from console_in_browser import OpenPage, settle
 from hearing_browser import give_ear
 from office_with_fleet import open_office_with_fleet
@@ -14,16 +19,47 @@ pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 LONG_MS = 60_000
 LARGE_PX = 64
+
+Reopen = Callable[[str], Awaitable[Page]]
+
 LANDSCAPE = ViewportSize(width=1280, height=800)
 
 
-async def at_robot(
-    service: Service, open_page: OpenPage, *, floors: int = 1, **options: object
-) -> Page:
-    """The touch screen of the first robot of an office."""
+@dataclass(frozen=True)
+class Screen:
+    """The touch screen of the first robot of an office, and the office's service."""
+
+    service: Service
+    robot: str
+    reopen: Reopen
+
+    async def begin(self, size: ViewportSize = LANDSCAPE) -> Page:
+        page = await self.reopen(f"/robots/{self.robot}/ask")
+        await page.set_viewport_size(size)
+        await expect(page.get_by_text("What may I do for you?")).to_be_visible(timeout=LONG_MS)
+        return page
+
+
+@pytest_asyncio.fixture(scope="module", loop_scope="session")
+async def first_robot(lasting_service: Service) -> str:
+    """One of an office with two floors that nobody else needs for himself."""
+    site = await open_office_with_fleet(lasting_service, floors=2)
+    return await robot_of(lasting_service, site)
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def screen(lasting_service: Service, first_robot: str, reopen: Reopen) -> Screen:
+    return Screen(lasting_service, first_robot, reopen)
+
+
+async def robot_of(service: Service, site: UUID) -> str:
+    return next(iter((await service.fleets.fleet(site)).dispatcher.fleet.robots))
+
+
+async def at_robot(service: Service, open_page: OpenPage, floors: int) -> Page:
+    """The touch screen of the first robot of an office of the test's own."""
     site = await open_office_with_fleet(service, floors=floors)
-    robot = next(iter((await service.fleets.fleet(site)).dispatcher.fleet.robots))
-    page = await open_page(f"/robots/{robot}/ask", **options)
+    page = await open_page(f"/robots/{await robot_of(service, site)}/ask")
     await expect(page.get_by_text("What may I do for you?")).to_be_visible(timeout=LONG_MS)
     return page
 
@@ -32,10 +68,8 @@ async def press(page: Page, name: str) -> None:
     await page.get_by_role("button", name=name, exact=True).click()
 
 
-async def test_a_thing_is_brought_by_pressing_buttons_alone(
-    service: Service, open_page: OpenPage
-) -> None:
-    page = await at_robot(service, open_page)
+async def test_a_thing_is_brought_by_pressing_buttons_alone(screen: Screen) -> None:
+    page = await screen.begin()
     await press(page, "Bring something somewhere")
     await press(page, "This, which I have here")
     await press(page, "F1 103")
@@ -52,10 +86,9 @@ async def test_a_thing_is_brought_by_pressing_buttons_alone(
     await expect(page.get_by_text("What may I do for you?")).to_be_visible()
 
 
-async def test_a_room_is_found_by_its_floor_and_number(
-    service: Service, open_page: OpenPage
-) -> None:
-    page = await at_robot(service, open_page, floors=2)
+async def test_a_room_is_found_by_its_floor_and_number(screen: Screen) -> None:
+    before = await screen.service.fleets.requests(None)
+    page = await screen.begin()
     await press(page, "Come to a room")
     await press(page, "F2")
     for digit in "203":
@@ -65,11 +98,11 @@ async def test_a_room_is_found_by_its_floor_and_number(
     await expect(page.get_by_text("I am to come to F2 203. Is that right?")).to_be_visible()
     await press(page, "No")
     await expect(page.get_by_text("What may I do for you?")).to_be_visible()
-    assert (await service.fleets.requests(None)) == []
+    assert len(await screen.service.fleets.requests(None)) == len(before)
 
 
-async def test_whoever_asks_is_shown_the_way(service: Service, open_page: OpenPage) -> None:
-    page = await at_robot(service, open_page)
+async def test_whoever_asks_is_shown_the_way(screen: Screen) -> None:
+    page = await screen.begin()
     await press(page, "Show me the way")
     await press(page, "F1 106")
     await expect(page.get_by_role("heading", name="I am to show you the way from")).to_be_focused()
@@ -78,10 +111,8 @@ async def test_whoever_asks_is_shown_the_way(service: Service, open_page: OpenPa
     await expect(mine).to_contain_text("is expected to be done with it in about")
 
 
-async def test_what_is_said_in_words_is_asked_back_read_back_and_done(
-    service: Service, open_page: OpenPage
-) -> None:
-    page = await at_robot(service, open_page, floors=2)
+async def test_what_is_said_in_words_is_asked_back_read_back_and_done(screen: Screen) -> None:
+    page = await screen.begin()
     words = page.get_by_label("Say it in words")
     await words.fill("come to the hall")
     await press(page, "Say it")
@@ -128,8 +159,8 @@ async def test_what_cannot_be_met_says_why_and_offers_the_next_time(
     await expect(mine).to_contain_text("Come to F8 806", timeout=LONG_MS)
 
 
-async def test_every_button_is_large(service: Service, open_page: OpenPage) -> None:
-    page = await at_robot(service, open_page, floors=2)
+async def test_every_button_is_large(screen: Screen) -> None:
+    page = await screen.begin()
     await press(page, "Come to a room")
     for button in await page.get_by_role("button").all():
         box = await button.bounding_box()
@@ -138,10 +169,8 @@ async def test_every_button_is_large(service: Service, open_page: OpenPage) -> N
 
 
 @pytest.mark.parametrize("size", [PHONE, LANDSCAPE], ids=["phone", "1280x800"])
-async def test_axe_finds_nothing_on_the_way_through_it(
-    service: Service, open_page: OpenPage, size: ViewportSize
-) -> None:
-    page = await at_robot(service, open_page, floors=2, viewport=size)
+async def test_axe_finds_nothing_on_the_way_through_it(screen: Screen, size: ViewportSize) -> None:
+    page = await screen.begin(size)
     await load_axe(page)
     await require_clean(page)
     for button in ("Bring something somewhere", "This, which I have here", "F1 103", "F1 106"):
@@ -164,7 +193,7 @@ async def require_clean(page: Page) -> None:
 async def test_whoever_goes_away_leaves_the_start_to_who_comes_next(
     service: Service, open_page: OpenPage
 ) -> None:
-    page = await at_robot(service, open_page)
+    page = await at_robot(service, open_page, floors=1)
     await page.clock.install()
     await press(page, "Come to a room")
     # It counts from when the question is shown.

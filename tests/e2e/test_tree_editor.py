@@ -1,15 +1,19 @@
 """Changing a task tree in its drawing: by keys, by dragging and in the form, beside its text."""
 
 import pytest
+import pytest_asyncio
 from console_in_browser import OpenPage
+from legs_and_bars import SCENE
 from playwright.async_api import Locator, Page, expect
+
+from mend.server.composition import Service
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 SHELF = """\
 name: shelf
-scene: eket  # the one of the paper
+scene: legs_and_bars  # the small one
 tree:
   then:
     # It carries all else.
@@ -20,6 +24,12 @@ tree:
         - {behavior: pick_and_place, object: yellow_bar, place: yellow_bar}
 """
 LEG, PINK, YELLOW = (f"{line}\n" for line in SHELF.splitlines() if "pick_and_place" in line)
+
+
+@pytest_asyncio.fixture(autouse=True, loop_scope="session")
+async def bench(service: Service) -> None:
+    """A scene in which a check takes a moment."""
+    await service.library.scenes.save("legs_and_bars", SCENE)
 
 
 def text_of(page: Page) -> Locator:

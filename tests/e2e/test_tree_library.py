@@ -1,15 +1,19 @@
 """The library of task trees: upload, editor, and what can be done with a tree."""
 
 import pytest
+import pytest_asyncio
 from console_in_browser import OpenPage
+from legs_and_bars import LEGS, SCENE
 from playwright.async_api import Locator, Page, Route, expect
+
+from mend.server.composition import Service
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 SHELF = """\
 name: shelf
-scene: eket
+scene: legs_and_bars
 tree:
   then:
     - {behavior: pick_and_place, object: green_leg, place: green_leg}
@@ -40,6 +44,13 @@ OFFSETS = """frame => {
     const [beside, drawn] = [number, line].map((each) => each.getBoundingClientRect());
     return [drawn.top - (text.top + 24 * 1500), beside.top - drawn.top, drawn.left - text.left];
 }"""
+
+
+@pytest_asyncio.fixture(autouse=True, loop_scope="session")
+async def bench(service: Service) -> None:
+    """A scene in which a check takes a moment; and a task there."""
+    await service.library.scenes.save("legs_and_bars", SCENE)
+    await service.library.trees.save("legs", LEGS)
 
 
 async def by_button(page: Page, name: str, content: bytes) -> None:
@@ -111,7 +122,7 @@ async def test_file_that_is_no_text_is_refused_in_a_sentence(open_page: OpenPage
 
 
 async def test_drawing_follows_the_text_while_it_is_typed(open_page: OpenPage) -> None:
-    page = await open_page("/edit/eket")
+    page = await open_page("/edit/legs")
     await expect(drawn(page, "green leg")).to_be_visible()
     text = await text_of(page).input_value()
     await text_of(page).fill(text.replace("object: green_leg", "name: first, object: green_leg"))
@@ -122,7 +133,7 @@ async def test_drawing_follows_the_text_while_it_is_typed(open_page: OpenPage) -
 
 
 async def test_only_the_verdict_on_the_last_text_counts(open_page: OpenPage) -> None:
-    page = await open_page("/edit/eket")
+    page = await open_page("/edit/legs")
     await expect(page.get_by_role("status").filter(has_text="No mistakes")).to_be_visible()
     held: list[Route] = []
 
@@ -184,7 +195,7 @@ async def test_tab_leaves_the_text_and_enter_keeps_the_indentation(open_page: Op
 
 
 async def test_unsaved_text_is_guarded_and_never_lost(open_page: OpenPage) -> None:
-    page = await open_page("/edit/eket")
+    page = await open_page("/edit/legs")
     await text_of(page).fill("my: precious")
     await page.get_by_role("link", name="Runs").click()
     await page.get_by_role("button", name="Keep editing").click()
@@ -193,12 +204,12 @@ async def test_unsaved_text_is_guarded_and_never_lost(open_page: OpenPage) -> No
     await page.get_by_role("link", name="Runs").click()
     await page.get_by_role("button", name="Leave").click()
     await expect(page.get_by_role("heading", name="Runs", exact=True)).to_be_visible()
-    await page.goto("/edit/eket")
+    await page.goto("/edit/legs")
     await expect(text_of(page)).to_have_value("my: precious")
     await expect(page.get_by_text("changes that were not saved yet")).to_be_visible()
     await page.get_by_role("button", name="Discard changes").click()
     await page.get_by_role("button", name="Discard", exact=True).click()
-    await page.goto("/edit/eket")
+    await page.goto("/edit/legs")
     await expect(page.get_by_role("status").filter(has_text="No mistakes")).to_be_visible()
     assert "precious" not in await text_of(page).input_value()
 

@@ -100,14 +100,14 @@ async def test_each_button_does_what_it_says_after_few_words(stage: Stage, situa
 
 
 def kinds_in(situation: str) -> list[str]:
-    """Every kind that there is so; in the suite each in one of the usual situations."""
+    """Every kind that there is so; in the suite every other one, in one usual situation."""
     kinds = sorted(load_scripts())
     if situation == "felt":
         return ["blocked"]
     if situation == "seen nowhere":
         return ["undone", "missing"]
     usual = list(SITUATIONS)[:4]
-    return sample(kinds[usual.index(situation) :: len(usual)], kinds)
+    return sample(kinds[usual.index(situation) :: 2 * len(usual)], kinds)
 
 
 async def play(stage: Stage, page: Page, kind: str, situation: str, number: int) -> bool:

@@ -9,6 +9,7 @@ from uuid import uuid4
 
 import httpx
 import pytest
+import pytest_asyncio
 from access_rows import SOCKETS as OFFERED
 from access_rows import Request, requests
 from people import People, serving_people
@@ -24,9 +25,10 @@ ROLES = (*PEOPLE, Role.ROBOT)
 Served = tuple[ServiceUnderTest, People]
 
 
-@pytest.fixture
-async def served(tmp_path: Path) -> AsyncIterator[Served]:
-    async with serving_people(tmp_path) as served:
+@pytest_asyncio.fixture(scope="module", loop_scope="module")
+async def served(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Served]:
+    """One for all, which describes itself once: nobody asks for anything that there is."""
+    async with serving_people(tmp_path_factory.mktemp("people")) as served:
         yield served
 
 
@@ -53,6 +55,7 @@ def test_what_has_no_row_needs_an_admin() -> None:
 ROLE_OF = {each.operation: each.role for each in permissions.ENDPOINTS}
 
 
+@pytest.mark.asyncio(loop_scope="module")
 @pytest.mark.parametrize("role", [*ROLES, None], ids=str)
 async def test_requests_are_refused_by_role_and_by_nothing_else(
     served: Served, role: Role | None
@@ -90,6 +93,7 @@ async def _ask(client: httpx.AsyncClient, request: Request) -> httpx.Response:
     return await client.request(request.method, request.path, **content)
 
 
+@pytest.mark.asyncio(loop_scope="module")
 @pytest.mark.parametrize("role", ROLES, ids=str)
 @pytest.mark.parametrize("path", ["/ws/helper", "/ws/live", "/ws/speech"])
 async def test_sockets_and_their_messages_are_refused_by_role(

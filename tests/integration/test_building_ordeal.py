@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from forked_mend import FORKED
 from ordeal_of_building import BuildingOrdeal, Drawn
 
 SMALL = Drawn(seed=9, floors=1, rooms=6, robots=2, localizer="exact", apart=True)
@@ -21,7 +22,7 @@ def read(truth: Path) -> list[dict[str, Any]]:
 async def test_what_a_service_says_is_true_whatever_happens_and_whoever_is_killed(
     tmp_path: Path,
 ) -> None:
-    ordeal = BuildingOrdeal(SMALL, tmp_path, minutes=0.4, kills=2, speed=20.0)
+    ordeal = BuildingOrdeal(SMALL, tmp_path, minutes=0.4, kills=2, speed=20.0, forked=FORKED)
     assert {each.whom for each in ordeal.kills} == {"service", "robots"}
     outcome = await ordeal.go_through()
     assert outcome.findings == []

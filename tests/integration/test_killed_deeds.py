@@ -10,6 +10,7 @@ from typing import Any
 
 import httpx
 import pytest
+from forked_mend import FORKED
 from service_process import ServiceProcess, service_process
 from service_under_test import TOKEN
 
@@ -67,7 +68,7 @@ class Killed:
 
 @pytest.fixture
 async def killed(tmp_path: Path) -> AsyncIterator[Killed]:
-    async with service_process(tmp_path, token=TOKEN) as service:
+    async with service_process(tmp_path, token=TOKEN, forked=FORKED) as service:
         killed = Killed(service)
         async with killed.client:
             yield killed

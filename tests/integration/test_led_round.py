@@ -69,7 +69,7 @@ async def done(service: Service, name: str) -> None:
     assert view.status == "done", view.reason
 
 
-@pytest.mark.slow(9)
+@pytest.mark.slow(6)
 async def test_what_one_robot_finds_others_go_round_from_the_beginning_after_a_restart_too(
     tmp_path: Path,
 ) -> None:

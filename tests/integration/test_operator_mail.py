@@ -2,6 +2,7 @@
 
 import asyncio
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
@@ -23,6 +24,9 @@ NOBODY_ANSWERS = RunRequest(
     max_attempts=1,
 )
 
+# In a simulation that nobody interrupts, waiting costs time too.
+PATIENCE: dict[str, Any] = {"ask_deadline_s": 5.0, "mail_deadline_s": 10.0, "help_window_s": 5.0}
+
 
 @pytest.mark.slow
 async def test_operators_are_written_to_and_the_run_gives_up_when_they_are_silent_too(
@@ -43,6 +47,7 @@ async def test_operators_are_written_to_and_the_run_gives_up_when_they_are_silen
             mail=mail,
             speech_voice="none",
             public_url="https://mend.example.org/",
+            **PATIENCE,
         )
         async with open_service(settings) as service:
             started = await service.runtime.start_run(NOBODY_ANSWERS)
@@ -72,7 +77,7 @@ async def test_a_mail_server_that_never_answers_does_not_keep_the_service_from_s
             operators=("ops@example.org",),
             timeout_s=300.0,
         )
-        settings = Settings(port=0, data_dir=tmp_path, mail=mail, speech_voice="none")
+        settings = Settings(port=0, data_dir=tmp_path, mail=mail, speech_voice="none", **PATIENCE)
         opened = open_service(settings)
         service = await opened.__aenter__()
         started = await service.runtime.start_run(NOBODY_ANSWERS)

@@ -1,17 +1,15 @@
 """`mend run --world live`, as a user calls it, on example robots."""
 
 import asyncio
-import os
 import signal
-import sys
 from collections.abc import AsyncIterator, Sequence
-from contextlib import asynccontextmanager
-from dataclasses import dataclass
+from contextlib import AbstractAsyncContextManager
 from pathlib import Path
 
 import pytest
 import pytest_asyncio
 from example_robot import example_robot
+from forked_mend import FORKED, Command, mend_command
 from sampled import sample
 from service_process import ServiceProcess, free_port, service_process
 
@@ -19,50 +17,15 @@ from mend.server.client import MendClient
 from mend.server.journal import events as ev
 
 # One event loop for all of them, and so one service.
-pytestmark = [pytest.mark.slow(3), pytest.mark.asyncio(loop_scope="module")]
+pytestmark = [pytest.mark.slow, pytest.mark.asyncio(loop_scope="module")]
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-MEND = str(Path(sys.executable).with_name("mend"))
-PATIENCE_S = 120.0
 
 
-@dataclass
-class Command:
-    """A `mend run` that goes on."""
-
-    process: asyncio.subprocess.Process
-
-    async def says(self, text: str) -> str:
-        """Wait for a line with a text in it."""
-        assert self.process.stdout is not None
-        async for line in self.process.stdout:
-            if text in line.decode():
-                return line.decode()
-        _, complaints = await self.process.communicate()
-        raise AssertionError(f"it ended without saying '{text}': {complaints.decode()}")
-
-    async def outcome(self) -> tuple[int | None, str, str]:
-        told, complaints = await self.process.communicate()
-        return self.process.returncode, told.decode(), complaints.decode()
-
-
-@asynccontextmanager
-async def mend_run(folder: Path, *options: str, **environment: str) -> AsyncIterator[Command]:
-    """A run that nobody at a terminal answers, with bounded patience."""
-    kept = {name: value for name, value in os.environ.items() if not name.startswith("MEND_")}
-    process = await asyncio.create_subprocess_exec(
-        MEND, "run", *options,
-        env={**kept, "MEND_DATA_DIR": str(folder), **environment},
-        stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE,
-        stderr=asyncio.subprocess.PIPE,
-    )  # fmt: skip
-    try:
-        async with asyncio.timeout(PATIENCE_S):
-            yield Command(process)
-    finally:
-        if process.returncode is None:
-            process.kill()
-            await process.communicate()
+def mend_run(
+    folder: Path, *options: str, **environment: str
+) -> AbstractAsyncContextManager[Command]:
+    return mend_command("run", *options, MEND_DATA_DIR=str(folder), **environment)
 
 
 def door_of(service: ServiceProcess) -> str:
@@ -72,7 +35,7 @@ def door_of(service: ServiceProcess) -> str:
 @pytest_asyncio.fixture(scope="module", loop_scope="module")
 async def service(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[ServiceProcess]:
     """Each test has robots of its own there."""
-    async with service_process(tmp_path_factory.mktemp("service")) as service:
+    async with service_process(tmp_path_factory.mktemp("service"), forked=FORKED) as service:
         yield service
 
 

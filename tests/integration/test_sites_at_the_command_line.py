@@ -8,13 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from forked_mend import FORKED, mend_command
 from service_process import ServiceProcess, service_process
 
 from mend.server.cli import main
 from mend.server.client import MendClient
-
-MEND = str(Path(sys.executable).with_name("mend"))
-PATIENCE_S = 120.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,43 +51,37 @@ def exit_code() -> int:
 
 async def run(service: ServiceProcess, *arguments: str) -> Outcome:
     """`mend run` in a process of its own."""
-    kept = {name: value for name, value in os.environ.items() if not name.startswith("MEND_")}
-    process = await asyncio.create_subprocess_exec(
-        MEND, "run", *arguments, "--url", service.url,
-        env=kept, stdin=asyncio.subprocess.DEVNULL,
-        stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
-    )  # fmt: skip
-    async with asyncio.timeout(PATIENCE_S):
-        told, complaints = await process.communicate()
-    return Outcome(process.returncode, told.decode(), complaints.decode())
+    async with mend_command("run", *arguments, "--url", service.url) as command:
+        return Outcome(*await command.outcome())
 
 
 TABLETOP = ("--world", "tabletop", "--speed", "max")
 
 
+@pytest.mark.slow(2)
 async def test_a_run_is_done_at_a_site_and_what_is_not_there_is_said_in_a_sentence(
     site: Site, tmp_path: Path
 ) -> None:
-    async with service_process(tmp_path) as service:
-        nowhere = await run(service, "kit", "--site", "kit")
+    async with service_process(tmp_path, forked=FORKED) as service:
+        nowhere = await run(service, "order", "--site", "order")
         assert (nowhere.code, nowhere.complaints) == (
             2,
-            "mend: no site 'kit' is open; open are: none\n",
+            "mend: no site 'order' is open; open are: none\n",
         )
-        opened = await site(service, "open", "kit", *TABLETOP)
+        opened = await site(service, "open", "order", *TABLETOP)
         name = opened.told.strip()
         assert (opened.code, opened.complaints) == (0, "")
         listed = await site(service, "list")
-        assert listed.told.startswith(f"{name}\tkit\ttabletop\t")
+        assert listed.told.startswith(f"{name}\torder\ttabletop\t")
         assert listed.told.endswith("\t1 of 1\n")
-        ran = await run(service, "kit", "--site", name[:8], "--answers", "none")
+        ran = await run(service, "order", "--site", name[:8], "--answers", "none")
         assert (ran.code, ran.complaints) == (0, "")
         assert "the run has finished: the task is done" in ran.told
         async with MendClient(service.url) as client:
             (done,) = await client.runs()
             assert (await client.run(done.id)).options["site"] == name
-        shown = await site(service, "show", "kit")
-        assert shown.told.startswith(f"site {name}: kit in tabletop (seed 0, speed max)\n")
+        shown = await site(service, "show", "order")
+        assert shown.told.startswith(f"site {name}: order in tabletop (seed 0, speed max)\n")
         assert f"pr2-{name[:8]} (pr2): connected, free" in shown.told
         assert " is at " in shown.told.splitlines()[-1]
         closed = await site(service, "close", name)
@@ -97,11 +89,11 @@ async def test_a_run_is_done_at_a_site_and_what_is_not_there_is_said_in_a_senten
         assert (await site(service, "list")).told == ""
 
         for _ in range(2):
-            assert (await site(service, "open", "kit", *TABLETOP)).code == 0
-        either = await site(service, "show", "kit")
+            assert (await site(service, "open", "order", *TABLETOP)).code == 0
+        either = await site(service, "show", "order")
         assert either.code == 2
-        assert "'kit' may be any of the sites" in either.complaints
+        assert "'order' may be any of the sites" in either.complaints
         unknown = await site(service, "open", "nowhere", *TABLETOP)
         assert (unknown.code, unknown.complaints.count("\n")) == (2, 1)
-        wrong = await site(service, "open", "kit", "--seed", "-1")
+        wrong = await site(service, "open", "order", "--seed", "-1")
         assert wrong.complaints.startswith("mend: --seed must be greater than or equal to 0")

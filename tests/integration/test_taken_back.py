@@ -16,19 +16,28 @@ from mend.server.settings import Settings
 
 FRAME = ("green_leg", "pink_bar", "yellow_bar", "blue_leg")
 ALL = (*FRAME, "purple_top")
+BEGINNING = """
+name: beginning
+scene: eket
+tree:
+  then:
+    - {behavior: pick_and_place, object: green_leg, place: green_leg}
+    - {behavior: pick_and_place, object: pink_bar, place: pink_bar}
+"""
 
 
 async def build(
-    tmp_path: Path, interventions: list[dict[str, Any]], **request: Any
+    tmp_path: Path, interventions: list[dict[str, Any]], tree: str = "eket", **request: Any
 ) -> tuple[RunView, list[ev.Event]]:
-    """The EKET base in the tabletop world while people do what the scenario says."""
-    scenario = {"name": "thief", "tree": "eket", "interventions": interventions}
+    """The EKET base, or its beginning, on the tabletop while people do what the scenario says."""
+    scenario = {"name": "thief", "tree": tree, "interventions": interventions}
     settings = Settings(port=0, data_dir=tmp_path, speech_voice="none", log_level="error")
     async with open_service(settings) as service:
+        await service.library.trees.save("beginning", BEGINNING)
         await service.library.scenarios.save("thief", yaml.safe_dump(scenario))
         run = await service.runtime.start_run(
             RunRequest(
-                tree="eket", world="tabletop", speed="max", seed=7, scenario="thief", **request
+                tree=tree, world="tabletop", speed="max", seed=7, scenario="thief", **request
             )
         )
         view = await service.runtime.wait_for_end(run.id)
@@ -77,7 +86,9 @@ async def test_who_places_what_was_to_be_put_back_has_done_it(
         steal("green_leg", during="green_leg", step=step, fraction=0.5),
         {"at_s": 26.0, "do": {"act": "place", "object": "green_leg", "place": "green_leg"}},
     ]
-    view, events = await build(tmp_path, deeds, answers=["yes"] * 20, person={"never": 1.0})
+    view, events = await build(
+        tmp_path, deeds, "beginning", answers=["yes"] * 20, person={"never": 1.0}
+    )
     assert view.status is RunStatus.FINISHED
     assert raised(events) == [(issue, "green_leg")]
     done = [each for each in events if isinstance(each, ev.NodeDone) and each.name == "green_leg"]
@@ -101,7 +112,7 @@ async def test_what_is_stolen_while_it_is_placed_is_never_called_done(
     step: int, tmp_path: Path
 ) -> None:
     thefts = [steal("pink_bar", during="pink_bar", step=step, fraction=0.5)]
-    view, events = await build(tmp_path, thefts, answers="none", max_attempts=1)
+    view, events = await build(tmp_path, thefts, "beginning", answers="none", max_attempts=1)
     assert view.status is RunStatus.FAILED
     assert view.result is not None
     assert view.result.reason == "'pink_bar' could not be done: it failed once"
@@ -127,7 +138,7 @@ async def test_what_is_moved_from_its_place_is_placed_again_without_a_question(
         "when": {"object": "pink_bar", "step": 2},
         "do": {"act": "move", "object": "green_leg", "to": {"x": 0.72, "y": -0.10}},
     }
-    view, events = await build(tmp_path, [move], answers="none")
+    view, events = await build(tmp_path, [move], "beginning", answers="none")
     assert undone(events) == ["green_leg"]
     assert raised(events) == [("undone", "green_leg")]
     assert view.status is RunStatus.FINISHED

@@ -20,10 +20,10 @@ from service_under_test import TOKEN, build
 from mend.server.limits import Limits
 
 SETTINGS = settings(
-    max_examples=sample(3, 10), deadline=None, suppress_health_check=list(HealthCheck)
+    max_examples=sample(1, 10), deadline=None, suppress_health_check=list(HealthCheck)
 )
 
-ALL_OF = sample(20.0, inf)
+ALL_OF = sample(10.0, inf)
 """Of so many cases that are drawn for an operation all are sent, and of more every eighth."""
 
 CHECKS = [

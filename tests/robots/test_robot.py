@@ -332,7 +332,7 @@ def test_a_push_against_the_arm_holds_it_in_place() -> None:
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=sample(8, 20))
+@settings(deadline=None, max_examples=sample(5, 20))
 @given(cycles=st.integers(0, 300), retreat=st.booleans())
 def test_an_interrupt_stops_all_motion_within_a_cycle(cycles: int, retreat: bool) -> None:
     bench = RobotBench()
@@ -356,7 +356,7 @@ def test_an_interrupt_stops_all_motion_within_a_cycle(cycles: int, retreat: bool
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=sample(8, 20))
+@settings(deadline=None, max_examples=sample(5, 20))
 @given(cycles=st.integers(0, 240))
 def test_a_behavior_interrupted_anywhere_resumes_and_finishes(cycles: int) -> None:
     bench = RobotBench()

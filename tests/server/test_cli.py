@@ -18,6 +18,7 @@ import httpx
 import numpy as np
 import pytest
 from broken_constraints import broken_constraints
+from forked_mend import mend_command
 from mcap.reader import make_reader
 from recorded_service import RecordedService, recorded_events
 from service_process import free_port
@@ -715,12 +716,13 @@ def test_the_command_stays_quiet_when_its_reader_goes_away(data_dir: Path) -> No
         assert process.wait() != 0
 
 
-@pytest.mark.slow(4)
-def test_the_papers_scenario_is_run_for_real_and_finishes(data_dir: Path) -> None:
+@pytest.mark.slow(3)
+@pytest.mark.usefixtures("data_dir")
+async def test_the_papers_scenario_is_run_for_real_and_finishes() -> None:
     arguments = "run eket --world tabletop --scenario eket_paper --speed max --seed 7 --json"
-    with begin(data_dir, *arguments.split()) as process:
-        out, err = process.communicate(timeout=120)
-    assert (process.returncode, err) == (0, "")
+    async with mend_command(*arguments.split()) as command:
+        code, out, err = await command.outcome()
+    assert (code, err) == (0, "")
     events = [ev.any_event.validate_json(line) for line in out.splitlines()]
     assert [(each.issue, each.object) for each in events if isinstance(each, ev.IssueRaised)] == [
         ("dropped", "pink_bar"),
@@ -747,14 +749,13 @@ def test_the_papers_scenario_is_run_for_real_and_finishes(data_dir: Path) -> Non
 
 
 @pytest.mark.slow(3)
-def test_ctrl_c_aborts_a_real_run_which_its_journal_then_tells(data_dir: Path) -> None:
+async def test_ctrl_c_aborts_a_real_run_which_its_journal_then_tells(data_dir: Path) -> None:
     arguments = "run eket --world tabletop --answers none --json"
-    with begin(data_dir, *arguments.split()) as process:
-        assert process.stdout is not None
-        first = ev.any_event.validate_json(process.stdout.readline())
-        process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
-    assert (process.returncode, err) == (130, f"mend: the run was aborted: by {local_user()}\n")
+    async with mend_command(*arguments.split()) as command:
+        first = ev.any_event.validate_json(await command.told.readline())
+        command.process.send_signal(signal.SIGINT)
+        code, out, err = await command.outcome()
+    assert (code, err) == (130, f"mend: the run was aborted: by {local_user()}\n")
     assert isinstance(ev.any_event.validate_json(out.splitlines()[-1]), ev.RunAborted)
     (journal,) = (data_dir / "runs").glob("*.sqlite")
     with JournalReader(journal) as reader:
@@ -763,16 +764,15 @@ def test_ctrl_c_aborts_a_real_run_which_its_journal_then_tells(data_dir: Path) -
 
 @pytest.mark.slow(2)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_serve_says_where_it_listens_and_stops_when_told(
-    data_dir: Path, number: signal.Signals
-) -> None:
-    with begin(data_dir, "serve", "--port", "0") as process:
-        assert process.stdout is not None
-        url = process.stdout.readline().split()[3].rstrip(";")
-        assert httpx.get(f"{url}/healthz").status_code == 200
-        process.send_signal(number)
-        _, err = process.communicate(timeout=60)
-    assert process.returncode == 0
+@pytest.mark.usefixtures("data_dir")
+async def test_serve_says_where_it_listens_and_stops_when_told(number: signal.Signals) -> None:
+    async with mend_command("serve", "--port", "0") as command:
+        url = (await command.says("Mend listens on")).split()[3].rstrip(";")
+        async with httpx.AsyncClient(base_url=url) as client:
+            assert (await client.get("/healthz")).status_code == 200
+        command.process.send_signal(number)
+        code, _, err = await command.outcome()
+    assert code == 0
     assert "Traceback" not in err
 
 
@@ -877,10 +877,10 @@ def test_a_run_with_an_option_that_its_world_has_not_is_refused(mend: Mend) -> N
 
 
 @pytest.mark.slow(3)
-def test_a_random_scene_is_printed_with_its_tree_and_can_be_run(
-    mend: Mend, data_dir: Path, tmp_path: Path
+async def test_a_random_scene_is_printed_with_its_tree_and_can_be_run(
+    mend: Mend, tmp_path: Path
 ) -> None:
-    words = ("scene", "random", "--seed", "5", "--parts", "4", "--world", "tabletop")
+    words = ("scene", "random", "--seed", "5", "--parts", "3", "--world", "tabletop")
     scene, tree = tmp_path / "scenes" / "random_5.yaml", tmp_path / "random_5.yaml"
     scene.parent.mkdir()
     scene.write_text(mend(*words).out)
@@ -888,6 +888,6 @@ def test_a_random_scene_is_printed_with_its_tree_and_can_be_run(
     assert mend("check", str(scene), "--world", "tabletop").code == 0
     assert mend("check", str(tree), "--world", "tabletop").code == 0
     run = ("run", str(tree), "--world", "tabletop", "--speed", "max", "--answers", "none")
-    with begin(data_dir, *run) as process:
-        out, err = process.communicate(timeout=120)
-    assert (process.returncode, err) == (0, ""), out
+    async with mend_command(*run) as command:
+        code, out, err = await command.outcome()
+    assert (code, err) == (0, ""), out

@@ -213,7 +213,7 @@ def test_a_deep_tree_is_read_and_one_beyond_the_limit_refused_without_recursion(
 
 @pytest.mark.slow(3)
 def test_very_many_nodes_are_read_and_beyond_the_limit_refused() -> None:
-    count = sample(5_000, 100_000)
+    count = sample(2_000, 100_000)
     leaves = [
         {"behavior": "pick_and_place", "object": f"a{number}", "place": f"b{number}"}
         for number in range(count)

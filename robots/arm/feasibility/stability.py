@@ -40,7 +40,9 @@ def stability_rad(
 def carried_by(standing: Standing, others: Sequence[Standing]) -> Iterator[Standing]:
     """What stands on a part alone, and on that."""
     for each in others:
-        if {below.where for below in beneath(each, [standing, *others])} == {standing.where}:
+        if not beneath(each, [standing]):
+            continue
+        if all(below.where == standing.where for below in beneath(each, others)):
             yield each
             yield from carried_by(each, others)
 

@@ -9,9 +9,11 @@ from pathlib import Path
 
 import pytest
 from checked_journal import checked, truncated
+from forked_mend import FORKED
 from made_up_history import write_history
 from sample_events import paused
 from service_process import service_process
+from two_boxes import BENCH, BOTH
 from typer.testing import CliRunner
 
 from mend.errors import MendError
@@ -198,13 +200,15 @@ def test_all_of_it_from_the_command_line(tmp_path: Path) -> None:
     assert "--runs: " in mend("prune", "--runs", "0", "--journal", str(path))[1]
 
 
-@pytest.mark.slow(7)
+@pytest.mark.slow(2)
 async def test_a_backup_of_a_killed_service_goes_on_where_it_was(tmp_path: Path) -> None:
     target = tmp_path / "copy.db"
-    async with service_process(tmp_path) as service:
+    async with service_process(tmp_path, forked=FORKED) as service:
         async with MendClient(service.url) as client:
+            await client.upload_scene(BENCH)
+            await client.upload_tree(BOTH)
             run = await client.start_run(
-                RunRequest(tree="eket", world="tabletop", speed=5.0, answers=["yes"] * 9)
+                RunRequest(tree="both", world="tabletop", speed=5.0, answers=["yes"] * 9)
             )
             async with asyncio.timeout(60), client.follow("watcher", after=0) as stream:
                 seen = [message async for message in aislice(stream, 6)]

@@ -266,7 +266,7 @@ def test_a_snapshot_from_before_anybody_was_escorted_is_still_read() -> None:
 
 
 @pytest.mark.slow(3)
-@settings(max_examples=sample(4, 12), deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=sample(2, 12), deadline=None, suppress_health_check=list(HealthCheck))
 @given(
     seed=st.integers(0, 20),
     stops=st.lists(st.tuples(st.floats(0.0, 20.0), st.floats(1.0, 18.0)), max_size=3),

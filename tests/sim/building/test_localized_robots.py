@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 from building_bench import BuildingBench, made_up
+from sampled import sample
 
 from mend.robots.link.messages import Finished, IssueDetected, Look, Looked, Resume
 from mend.sim.building.floor_pose import FloorPose
@@ -31,13 +32,13 @@ def rooms_of(bench: BuildingBench) -> list[str]:
 
 def test_a_robot_among_furniture_gets_to_where_it_is_sent() -> None:
     bench = localized()
-    for room in rooms_of(bench)[:4]:
+    for room in rooms_of(bench)[: sample(2, 4)]:
         bench.go("robot1", room)
         bench.run()
         at, pose = bench.world.robots[0].at, bench.scene.places[room].pose
         assert math.hypot(at.x - pose.x, at.y - pose.y) < 0.12
         assert off_m(bench) < 0.08
-    assert len(bench.of(Finished)) == 4
+    assert len(bench.of(Finished)) == sample(2, 4)
     assert bench.world.touches == 0
 
 
@@ -46,7 +47,7 @@ def test_who_believes_wrongly_where_it_is_touches_nothing() -> None:
     robot = bench.world.robots[0]
     assert robot.belief is not None
     wrong_by = np.random.default_rng(1)
-    for room in rooms_of(bench)[:2]:
+    for room in rooms_of(bench)[: sample(1, 2)]:
         bench.go("robot1", room)
         for _ in range(8):
             at = robot.at

@@ -255,7 +255,7 @@ def test_what_a_person_put_back_or_placed_is_seen_there() -> None:
     assert expect(driver, Look(object="o1", place="p1", expect="at_place")) is True
 
 
-@pytest.mark.parametrize("noise", [0.0, 4.0])
+@pytest.mark.parametrize("noise", sample([4.0], [0.0, 4.0]))
 def test_parts_without_faults_are_placed_without_an_alarm(noise: float) -> None:
     driver = make_driver(LAID_OUT, camera_noise=noise)
     for index in range(6):
@@ -273,7 +273,7 @@ def test_parts_of_the_fullest_table_are_placed_without_an_alarm() -> None:
     # Some of them: `benchmarks/random_scenarios.py` works off whole tables.
     scene = lay_out([(f"o{i}", f"p{i}") for i in range(64)], seed=9)
     driver = make_driver(scene)
-    chosen = range(0, 64, sample(21, 7))
+    chosen = range(0, 64, sample(32, 7))
     for index in chosen:
         driver.start(f"o{index}", f"p{index}", execution=f"e{index}")
         driver.run()

@@ -139,7 +139,7 @@ def test_the_same_happens_each_time() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", sample(range(3), range(8)))
+@pytest.mark.parametrize("seed", sample(range(2), range(8)))
 def test_in_drawn_corridors_it_touches_nothing_and_arrives_where_there_is_room(seed: int) -> None:
     """Noise of 1 cm; at least 2 radii and 0.2 m wide is room."""
     limits, radius_m = (FORWARD, SIDEWAYS)[seed % 2], (0.25, 0.3, 0.4)[seed % 3]
