@@ -35,6 +35,7 @@ from mend.server.runtime.views import RunStatus
 from mend.server.settings import Settings
 from mend.tasks.definition import TaskTreeDefinition
 from mend.tasks.library import TREES
+from mend.tasks.scenario import Scenario
 from mend.tasks.scene import Scene
 
 WORLDS = ("tabletop", "workcell")
@@ -95,8 +96,12 @@ async def run_task(
     seed: int,
     options: dict[str, float] | None = None,
     scene: Scene | None = None,
+    scenario: Scenario | None = None,
 ) -> Outcome:
-    """One run of a shipped task with nobody there to help, in its own scene or in another one."""
+    """One run of a shipped task with nobody there to help, in its own scene or in another one.
+
+    `scenario`: what people do there all the same.
+    """
     # Only here, so that a worker's limits on threads come before the libraries that heed them.
     from given_documents import given_documents
 
@@ -111,10 +116,13 @@ async def run_task(
         answers="none",
         world_options=options or {},
         scene=None if scene is None else OTHER_SCENE,
+        scenario=None if scenario is None else scenario.name,
     )
     begin = time.perf_counter()
     scenes = {} if scene is None else {OTHER_SCENE: scene.model_dump_json()}
     async with open_service(settings, given=given_documents({}, scenes)) as service:
+        if scenario is not None:
+            await service.library.scenarios.save(scenario.name, scenario.model_dump_json())
         run = (await service.runtime.start_run(request)).id
         view = await service.runtime.wait_for_end(run)
         events = await service.journal.read(0, 1_000_000, run)

@@ -5,6 +5,7 @@ from collections import Counter
 
 from mend.server.behaviors import behavior_parameters
 from mend.tasks.definition import BehaviorNode
+from mend.tasks.scenario import Scenario
 from mend.tasks.scene import Pose, Scatter, Scene
 from mend.tasks.task_file import check_built_in_task
 
@@ -37,6 +38,22 @@ def begun(task: str, left: int, seed: int) -> Scene:
         for name, part in scene.objects.items()
     }
     return scene.model_copy(update={"objects": objects, "scatter": Scatter()})
+
+
+def placed(task: str, left: int) -> Scenario:
+    """People who place the parts of the first leaves at once, and leave `left` to do.
+
+    For what no scene can begin with: parts that stand on others.
+    """
+    definition = check_built_in_task(task, behavior_parameters()).definition
+    leaves = [each for each in definition.nodes if isinstance(each, BehaviorNode)]
+    placing = [
+        {"at_s": 0.0, "do": {"act": "place", "object": each.object, "place": each.place}}
+        for each in leaves[: len(leaves) - left]
+    ]
+    return Scenario.model_validate(
+        {"name": "placed", "tree": task, "interventions": placing}, strict=False
+    )
 
 
 def _scattered(pose: Pose, scatter: Scatter, chance: random.Random) -> Pose:

@@ -20,8 +20,8 @@ from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.request_refused import RequestRefusedError
 from mend.server.journal.journal import Entry
 from mend.server.runtime.requests import RunRequest
-from mend.server.runtime.run_state import RunStatus
 from mend.server.runtime.steering_views import SteerNode
+from mend.server.runtime.views import RunStatus
 from mend.server.sites.requests import SiteRequest
 from mend.sim.building.scene import scene_of
 from mend.tasks.autonomy import AutonomyLevel

@@ -1,6 +1,9 @@
 """Numbers of a run over its clock, gone along with the keys, and read as a table."""
 
+from collections.abc import Awaitable, Callable
+
 import pytest
+import pytest_asyncio
 from console_in_browser import OpenPage
 from playwright.async_api import Page, expect
 from recorded_service import recorded_events
@@ -20,9 +23,14 @@ RECORDED = recorded_events()
 RUN = RECORDED[0].run
 
 
-async def opened(service: Service, open_page: OpenPage) -> Page:
-    await service.journal.append(Entry(events=RECORDED))
-    page = await open_page(f"/runs/{RUN}")
+@pytest_asyncio.fixture(scope="module", loop_scope="session")
+async def recorded(lasting_service: Service) -> None:
+    await lasting_service.journal.append(Entry(events=RECORDED))
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def plots(recorded: None, reopen: Callable[[str], Awaitable[Page]]) -> Page:  # noqa: ARG001
+    page = await reopen(f"/runs/{RUN}")
     await page.get_by_role("button", name="Plots", exact=True).click()
     return page
 
@@ -31,10 +39,8 @@ def shown_moment(page: Page) -> float:
     return float(page.url.split("?t=")[1])
 
 
-async def test_the_keys_go_from_value_to_value_and_the_replay_with_them(
-    service: Service, open_page: OpenPage
-) -> None:
-    page = await opened(service, open_page)
+async def test_the_keys_go_from_value_to_value_and_the_replay_with_them(plots: Page) -> None:
+    page = plots
     await page.get_by_label("Number to plot").select_option(label="node started: attempt")
     plot = page.get_by_role("slider", name="node started: attempt")
     await expect(plot.locator("canvas")).to_be_visible()
@@ -52,8 +58,8 @@ async def test_the_keys_go_from_value_to_value_and_the_replay_with_them(
     await expect(plot).to_have_attribute("aria-valuenow", str(len(starts)))
 
 
-async def test_a_click_on_a_plot_goes_to_its_time(service: Service, open_page: OpenPage) -> None:
-    page = await opened(service, open_page)
+async def test_a_click_on_a_plot_goes_to_its_time(plots: Page) -> None:
+    page = plots
     await page.get_by_label("Number to plot").select_option(label="step started: step")
     plot = page.get_by_role("slider", name="step started: step")
     box = await plot.locator(".u-over").bounding_box()
@@ -63,10 +69,8 @@ async def test_a_click_on_a_plot_goes_to_its_time(service: Service, open_page: O
     assert abs(shown_moment(page) - RECORDED[-1].time / 2) < 1.0
 
 
-async def test_a_plot_is_a_table_for_those_who_hear_it(
-    service: Service, open_page: OpenPage
-) -> None:
-    page = await opened(service, open_page)
+async def test_a_plot_is_a_table_for_those_who_hear_it(plots: Page) -> None:
+    page = plots
     await page.get_by_label("Number to plot").select_option(label="step started: step")
     panel = page.get_by_role("region", name="step started: step", exact=True)
     await panel.get_by_role("button", name="As a table").click()
@@ -89,7 +93,9 @@ async def test_recorded_poses_have_numbers_too(service: Service, open_page: Open
     layout_path(folder, RUN).write_text(layout.model_dump_json())
     frames = [encode(number, number / 10, poses(number / 100)) for number in range(700)]
     record_path(folder, RUN).write_bytes(framed(frames))
-    page = await opened(service, open_page)
+    await service.journal.append(Entry(events=RECORDED))
+    page = await open_page(f"/runs/{RUN}")
+    await page.get_by_role("button", name="Plots", exact=True).click()
     await page.get_by_label("Number to plot").select_option(label="joint: elbow")
     plot = page.get_by_role("slider", name="joint: elbow")
     await expect(plot).to_have_attribute("aria-valuemax", "700")

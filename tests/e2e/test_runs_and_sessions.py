@@ -19,6 +19,7 @@ from mend.server.runtime.requests import RunRequest
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 PATIENCE_MS = 60_000
+WORKCELL = "workcell A PR2 at a table, simulated with its cameras and contacts."
 
 
 async def sign_in(page: Page) -> None:
@@ -150,6 +151,10 @@ async def test_whole_way_to_a_run_can_be_gone_with_the_keyboard(open_page: OpenP
     await page.keyboard.press("Enter")
     await expect(page.get_by_role("heading", name="Start a run", exact=True)).to_be_visible()
     await tab_to("combobox", "Task tree")
+    await tab_to("radio", WORKCELL)
+    # The next world, in which a run begins at once.
+    await page.keyboard.press("ArrowDown")
+    await expect(page.get_by_role("radio", name="tabletop")).to_be_checked()
     await tab_to("button", "Start the run")
     await page.keyboard.press("Enter")
     await page.wait_for_url("**/runs/*-*")

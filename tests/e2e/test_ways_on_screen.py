@@ -121,7 +121,7 @@ async def play(stage: Stage, page: Page, kind: str, situation: str, number: int)
         return False
     label = labels[number]
     about = f"{label!r} of {kind}, {situation}"
-    read = await read_before(page, number)
+    read = await read_before(page, label)
     assert len(read) <= MOST_WORDS, (about, read)
     said = await effect_of(page, label)
     await press(page, label)
@@ -142,11 +142,10 @@ async def labels_on(page: Page) -> list[str]:
     return [keys.sub("", each) for each in await page.locator(".way").all_inner_texts()]
 
 
-async def read_before(page: Page, number: int) -> list[str]:
+async def read_before(page: Page, last: str) -> list[str]:
     """All words of the card from its top to that button, in the order in which they stand."""
     await expect(page.locator("article.question > header + h2 + .question-answers")).to_be_visible()
     card = await page.locator("article.question").evaluate(AS_SEEN)
-    last = (await labels_on(page))[number]
     headline = await page.locator(".question-text").inner_text()
     top = card[: card.index(headline) + len(headline)]
     below = card[len(top) :]
