@@ -54,6 +54,7 @@ serve: console  ## The service with the helper console on http://127.0.0.1:8080
 
 screenshots: console  ## The console's pictures in docs/images, from situations that are played
 	$(BIN)/python scripts/screenshots.py
+	$(BIN)/python scripts/view_sheets.py
 
 test: console $(VENV)/.kernels  ## Every test, in random order; one in a browser that fails is run once more
 	$(MAKE) --no-print-directory -j -O console-tests $(VENV)/.test-modules

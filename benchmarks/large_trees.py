@@ -27,11 +27,11 @@ import httpx
 import psutil
 from websockets.asyncio.client import ClientConnection, connect
 
+from mend.garbage import settle_garbage
 from mend.server.composition import open_service
 from mend.server.document_checks import TreeChecker
 from mend.server.documents import DocumentView
 from mend.server.fixed_documents import GivenFiles, fixed_documents
-from mend.server.garbage import settle_garbage
 from mend.server.rendered import Rendered
 from mend.server.scene_checks import load_world_checks
 from mend.server.settings import Settings

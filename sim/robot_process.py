@@ -20,6 +20,7 @@ from uuid import uuid4
 from pydantic import ValidationError
 
 from mend.documents.strict_model import StrictModel
+from mend.garbage import look_for_garbage_seldom
 from mend.robots.agent import AgentGroup
 from mend.robots.link.channel import LinkRefusedError
 from mend.robots.link.client import LinkedAgent, run_agents
@@ -64,6 +65,7 @@ def find_world(name: str) -> WorldAdapter:
 
 def main() -> int:
     """Run one simulated world. Returns the exit code."""
+    look_for_garbage_seldom()
     logging.basicConfig(level=logging.WARNING, format="%(name)s: %(message)s")
     _die_with_parent()
     try:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from mend.garbage import look_for_garbage_seldom
 from mend.server.cli.failures import CommandLineError
 from mend.server.cli.lazy_commands import LazyGroup, add_commands
 
@@ -45,6 +46,7 @@ add_commands(app)
 
 def main() -> None:
     """The entry point: every failure ends in sentences on stderr, never in a traceback."""
+    look_for_garbage_seldom()
     try:
         app(prog_name="mend")
     except CommandLineError as failure:

@@ -122,7 +122,6 @@ def run(
         read_speed,
         settings_of_its_own,
     )
-    from mend.server.composition import open_service
     from mend.server.errors import ImpossibleError
     from mend.server.runtime.ports import LIVE
     from mend.server.runtime.requests import RunRequest
@@ -156,6 +155,9 @@ def run(
             report.parent.mkdir(parents=True, exist_ok=True)
         open_host: OpenHost
         if url is None:
+            # All of a service, which one that only asks another has no use for.
+            from mend.server.composition import open_service
+
             settings = settings_of_its_own(journal, files, takes_robots=world == LIVE)
             open_host = partial(own_service, open_service, settings, files.given)
         elif journal is None:

@@ -48,8 +48,8 @@ def serve(
 
 
 async def _serve(settings: "Settings") -> None:
+    from mend.garbage import settle_garbage
     from mend.server.composition import open_service
-    from mend.server.garbage import settle_garbage
 
     stop = asyncio.Event()
     loop = asyncio.get_running_loop()

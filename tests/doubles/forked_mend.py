@@ -37,7 +37,7 @@ LOADED = (
     "mend.server.cli.shift",
     "mend.server.cli.site_names",
     "mend.server.composition",
-    "mend.server.garbage",
+    "mend.garbage",
     "mend.sim.building.adapter",
     "mend.sim.tabletop.tabletops",
     "mend.sim.workcell.adapter",
