@@ -152,7 +152,7 @@ def test_the_same_seed_draws_the_same_scene_and_another_one_another():
 
 @pytest.mark.slow(2)
 def test_what_is_drawn_covers_the_limits():
-    scenes = [random_scene(seed).scene for seed in range(sample(32, 40))]
+    scenes = [random_scene(seed).scene for seed in range(40)]
     parts = [part for scene in scenes for part in scene.objects.values()]
     boxes = [part.size for part in parts if part.knob is None]
     for drawn, (low, high) in (
