@@ -276,7 +276,20 @@ async def finished_run(service: Service, open_page: OpenPage) -> Page:
     await service.library.scenes.save("small_bench", BENCH)
     await service.library.trees.save("both", BOTH)
     await service.library.scenarios.save("stolen", json.dumps(STOLEN))
-    request = RunRequest(tree="both", world="tabletop", speed="max", scenario="stolen", seed=2)
+    return await _at_its_end(
+        service,
+        open_page,
+        RunRequest(tree="both", world="tabletop", speed="max", scenario="stolen", seed=2),
+    )
+
+
+async def finished_run_of_the_paper(service: Service, open_page: OpenPage) -> Page:
+    """All of its faults were talked over, which takes longer to simulate."""
+    request = RunRequest(tree="eket", world="tabletop", speed="max", scenario="eket_paper")
+    return await _at_its_end(service, open_page, request)
+
+
+async def _at_its_end(service: Service, open_page: OpenPage, request: RunRequest) -> Page:
     run = await service.runtime.start_run(request)
     view = await service.runtime.wait_for_end(run.id)
     assert view.status is RunStatus.FINISHED
@@ -307,10 +320,12 @@ async def scenes(_: Service, open_page: OpenPage) -> Page:
     return page
 
 
-async def scene_out_of_reach(service: Service, open_page: OpenPage) -> Page:
+async def scene_out_of_reach(
+    service: Service, open_page: OpenPage, scene: str = "small_bench"
+) -> Page:
     """A box was moved where no robot reaches it."""
     await service.library.scenes.save("small_bench", BENCH)
-    page = await open_page("/edit_scene/small_bench")
+    page = await open_page(f"/edit_scene/{scene}")
     await page.get_by_label("Forward x (m)").fill("0.95")
     await page.get_by_label("Forward x (m)").press("Enter")
     mistake = page.locator(".mistake-line").filter(has_text="does not reach (0.950")
