@@ -69,6 +69,16 @@ def stop_of(building: Building, elevator: str, floor: str) -> Point:
     return place.x, place.y
 
 
+def elevator_around(building: Building, x: float, y: float, z: float) -> str | None:
+    """The elevator in whose cabin, or shaft between floors, a position is; None outside of all."""
+    floor = building.floor_at(z)
+    for name, each in building.document.elevators.items():
+        floors = [on for on in each.stops if floor in (None, on)]
+        if any(math.dist(stop_of(building, name, on), (x, y)) < CABIN_M for on in floors):
+            return name
+    return None
+
+
 def _ends(floor: Floor, between: tuple[str, str]) -> tuple[float, float, float, float]:
     a, b = (floor.places[each] for each in between)
     return a.x, a.y, b.x, b.y

@@ -136,4 +136,5 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
             was_shut=wait.was_shut,
             floor=base.ways.floor(base.body.pose()),
             waited_s=now_s - wait.since_s,
+            failed=None if wait.aboard else base.failed_in(wait.ride.elevator),
         )
