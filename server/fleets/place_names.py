@@ -45,8 +45,8 @@ class PlaceNames:
         return next(iter(self.around(x, y, z)), None)
 
     def around(self, x: float, y: float, z: float) -> list[str]:
-        """All places of a floor that robots are sent to, and that one there leaves free, the nearest
-        first."""
+        """All places of a floor that robots are sent to, and that one there leaves free,
+        the nearest first."""
         free = (e for e in self._away_m(x, y, z) if e[0] >= BESIDE_M and e[1] in self._called)
         return [each for _, each in sorted(free)]
 
