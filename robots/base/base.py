@@ -189,10 +189,10 @@ class Base(Effector[BaseBody]):
 
     def _sees_open(self, door: str, here: BasePose) -> bool:
         """Whether a door, or an elevator, is seen to stand open."""
-        if self.ways.elevator_at(here) == door:
-            return self.sees_out()
         posts = self.ways.posts(door, here)
-        return posts is not None and sees_through(self.body.scan(), here, posts)
+        if posts is None:
+            return self.ways.elevator_at(here) == door and self.sees_out()
+        return sees_through(self.body.scan(), here, posts)
 
     def _failed_at(self, met: tuple[float, float], z: float) -> str | None:
         """The robot that has failed and stands where something is met."""
