@@ -41,7 +41,7 @@ class ElevatorHelp(BaseMonitor[ElevatorPatience]):
 
     def _why(self, awaited: AwaitedElevator) -> str | None:
         ride, waited_s = awaited.ride, awaited.waited_s
-        if awaited.failed is not None:
+        if awaited.failed is not None and not awaited.is_open:
             if waited_s < self.settings.asks_s:
                 return None
             stands = f"{awaited.failed} has failed and stands in {ride.elevator}"
