@@ -69,7 +69,8 @@ async def test_who_wants_to_ride_asks_people_to_push_it_out(
     (asked,) = [e for e in events if isinstance(e, ev.IssueRaised) and e.issue == "elevator_help"]
     assert asked.detection is not None
     assert asked.detection.robot is not None
-    assert f"stands in {LIFT}, and has to be pushed out" in asked.detection.explanation
+    assert f"I need {LIFT} to get from F1 to F2" in asked.detection.explanation
+    assert asked.detection.explanation.endswith("which has failed, has to be pushed out of it")
 
 
 async def test_nobody_is_planned_to_ride_until_it_has_got_out_by_itself(

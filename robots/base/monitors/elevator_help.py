@@ -44,9 +44,8 @@ class ElevatorHelp(BaseMonitor[ElevatorPatience]):
         if awaited.failed is not None and not awaited.is_open:
             if waited_s < self.settings.asks_s:
                 return None
-            stands = f"{awaited.failed} has failed and stands in {ride.elevator}"
-            mine = f"before I can get from {ride.from_floor} to {ride.to_floor}"
-            return f"{stands}, and has to be pushed out {mine}"
+            needs = f"I need {ride.elevator} to get from {ride.from_floor} to {ride.to_floor}"
+            return f"{needs}, and {awaited.failed}, which has failed, has to be pushed out of it"
         if not ride.called and waited_s >= self.settings.asks_s:
             if not awaited.aboard and not awaited.is_open:
                 return f"I need {ride.elevator} to get from {ride.from_floor} to {ride.to_floor}"

@@ -49,7 +49,7 @@ def test_who_is_told_asks_for_that_and_rides_once_it_is_out() -> None:
     assert issue.issue == "elevator_help"
     assert issue.detection is not None
     assert issue.detection.robot == "robot2"
-    assert "robot2 has failed and stands in lift1" in issue.detection.explanation
+    assert "and robot2, which has failed, has to be pushed out" in issue.detection.explanation
     bench.run()
     assert not bench.world.intervene(Intervention(act=Act.RELEASE, object="robot2"))
     at, stop = bench.world.robots[1].at, stop_of(BUILDING, "lift1", "F1")

@@ -82,8 +82,10 @@ def test_it_asks_for_a_robot_to_be_pushed_out_that_has_failed_in_the_cabin(*, ca
     detection = asked(is_open=False, waited_s=2.0)
     assert detection is not None
     assert detection.robot == "robot2"
-    why = "robot2 has failed and stands in lift1, and has to be pushed out before I can get from"
-    assert detection.explanation == f"{why} F1 to F3"
+    needs = "I need lift1 to get from F1 to F3"
+    assert detection.explanation == (
+        f"{needs}, and robot2, which has failed, has to be pushed out of it"
+    )
 
 
 @pytest.mark.parametrize(
