@@ -5,13 +5,13 @@
 
 Each building has 2 to 5 robots and a real service, which takes random requests of all kinds over
 REST. Robots are taken out of service and put back, ways are barred and cleared, some are told to be
-closed that are not, requests are cancelled and changed, things are stolen from baskets, people step
-in the way, robots are carried away. Whom robots ask is willing, unwilling, silent or rude, forgets
-things, does not do what they said, or lies about where a robot is. The service, or robots where
-they are in a process of their own, are killed (`kill -9`) at drawn moments of the site's clock, or
-as a thing changes hands, and start again on what they kept. Then all is put right, and everything
-has to come to its end. The ledger (`ordeal_ledger.py`) compares what the journal says with what the
-world really was.
+closed that are not, requests are cancelled and changed, things are stolen from baskets (also over
+REST), people step in the way, robots are carried away. Whom robots ask is willing, unwilling,
+silent or rude, forgets things, does not do what they said, or lies about where a robot is. The
+service, or robots where they are in a process of their own, are killed (`kill -9`) at drawn moments
+of the site's clock, or as a thing changes hands, and start again on what they kept. Then all is put
+right, and everything has to come to its end. The ledger (`ordeal_ledger.py`) compares what the
+journal says with what the world really was.
 
 An event is one of what happens, one question that somebody was asked, one leg or errand that has
 ended, one robot carried away, one theft, or one kill. `minutes` are of the sites' clocks. Building

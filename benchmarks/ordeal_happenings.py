@@ -13,6 +13,7 @@ from mend.fleet.requests import RequestStatus, request_of
 from mend.maps.building.building import Building, PlaceKind
 from mend.server.client import MendClient
 from mend.server.client_errors import RefusedError, UnreachableError
+from mend.server.fleets.leg_task import item_of
 from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.views import FleetView, RequestView
 from mend.tasks.intervention import Act, Intervention
@@ -63,7 +64,7 @@ class SiteHappenings:
         draws: dict[Callable[[FleetView], Awaitable[str]], float] = {
             self._ask: 10, self._cancel: 1.5, self._change: 1, self._fail: 1, self._back: 2,
             self._bar: 1.5, self._clear: 1.5, self._tell_way: 1, self._step_in: 2,
-            self._send: 0.5, self._be_rude: 0.5,
+            self._send: 0.5, self._be_rude: 0.5, self._steal: 0.5,
         }  # fmt: skip
         (draw,) = self._chance.choices(list(draws), weights=list(draws.values()))
         what = draw.__name__.strip("_").replace("_", " ")
@@ -195,6 +196,15 @@ class SiteHappenings:
     async def _step_in(self, fleet: FleetView) -> str:
         await self._intervene(fleet, Intervention(act=Act.BLOCK))
         return "the way of a robot"
+
+    async def _steal(self, fleet: FleetView) -> str:
+        """Out of a basket, where one is known to have something in it."""
+        aboard = {name for each in fleet.robots for name in each.aboard}
+        open_ = await self._open()
+        things = [e.name for e in open_ if e.name in aboard and e.what["kind"] == "transport"]
+        thing = item_of(WHAT, self._one(things))
+        await self._intervene(fleet, Intervention(act=Act.STEAL, object=thing))
+        return thing
 
     async def _intervene(self, fleet: FleetView, deed: Intervention) -> None:
         run = self._one([each.run for each in fleet.robots if each.run is not None])

@@ -22,6 +22,7 @@ from mend.dialogue.evidence import Change
 from mend.fleet.requests import LegAction
 from mend.maps.building.building import Building
 from mend.robots.base.behaviors.behavior import MEETS_M
+from mend.robots.base.companion import CAUGHT_UP_M
 from mend.server.fleets.leg_task import item_of
 from mend.server.fleets.place_names import PlaceNames
 from mend.sim.building.goods import MOST_ITEMS
@@ -29,7 +30,8 @@ from mend.tasks.scene import Scene
 
 OVER = ("done", "refused", "cancelled", "failed")
 AT_M = MEETS_M + 0.4
-BESIDE_M = 2.3
+BESIDE_M = CAUGHT_UP_M + 0.7
+"""Who comes nearer when they were last looked at walks so far until the robot sees them there."""
 WITH_PERSON_M = 3.0
 BEGINS_S = 60.0
 QUOTE = "'"

@@ -123,6 +123,8 @@ class Outcome:
     def events(self) -> int:
         """What happened, what robots ended, what somebody was asked, and kills."""
         happened = sum(n for what, n in self.counts.items() if what.startswith("happened: "))
+        # Those that came about are among what the world has seen stolen.
+        happened -= self.counts["happened: steal"]
         others = (
             "question",
             "errand ended",

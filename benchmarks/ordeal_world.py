@@ -10,7 +10,7 @@ import json
 import math
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import combinations
 from pathlib import Path
 from random import Random
@@ -135,20 +135,31 @@ class Witness:
         aboard = [n for n, each in goods.items.items() if each.robot is not None and not each.taken]
         if not aboard:
             return
-        name = self._chance.choice(aboard)
-        robot = goods.items[name].robot
-        assert robot is not None, "it is aboard"
-        wish = goods.wishes.get(robot)
-        if not goods.steal(name):
+        self._have_stolen(self._chance.choice(aboard), goods.steal)
+
+    def _have_stolen(self, name: str | None, steal: Callable[[str], str]) -> str:
+        """Write down whose basket somebody takes a thing out of, if they do; why they cannot."""
+        goods = self._world.goods
+        item = None if name is None else goods.items.get(name)
+        robot = None if item is None else item.robot
+        wish = None if robot is None else goods.wishes.get(robot)
+        problem = steal(name or "")
+        if not problem:
             self._note_items()
             offers = wish.item if wish is not None and wish.hands_over else None
             self._write("stolen", item=name, robot=robot, offers=offers)
+        return problem
 
     def _intervene(self, intervention: Intervention) -> str:
         self._begin()
         lied = intervention.act in PROMISED and self._chance.random() < self._lies
         lied = lied and not self._calm.exists()
-        problem = "somebody said so and did not do it" if lied else self._do(intervention)
+        if lied:
+            problem = "somebody said so and did not do it"
+        elif intervention.act is Act.STEAL:
+            problem = self._have_stolen(intervention.object, lambda _: self._do(intervention))
+        else:
+            problem = self._do(intervention)
         self._note_items()
         self._write("did", act=str(intervention.act), problem=problem, lied=lied)
         self._look_for_kills()

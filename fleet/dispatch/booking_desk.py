@@ -2,6 +2,7 @@
 
 from mend.errors import ConflictError, WrongInputError
 from mend.fleet.dispatch.booking import Answer, AnyRequest, Booking, Expected, Series
+from mend.fleet.dispatch.closed_words import with_closed
 from mend.fleet.dispatch.dispatch_state import DispatchState, refusing
 from mend.fleet.dispatch.giving_up import GivingUp
 from mend.fleet.dispatch.next_possible import bounded, next_possible
@@ -140,7 +141,8 @@ class BookingDesk:
                 self._state.fleet = trial
             return None
         window = next_possible(fleet, item, longest_s=policy.longest_s, grace_s=policy.grace_s)
-        return Answer(False, None, refused, window)
+        why = with_closed(refused, self._state.building, fleet.closed_until_s())
+        return Answer(False, None, why, window)
 
     def _cancel(self, booking: Booking) -> None:
         item = self._state.fleet.items[booking.name]

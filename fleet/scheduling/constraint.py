@@ -7,6 +7,9 @@ from typing import NamedTuple
 from mend.fleet.scheduling.problem import Problem
 from mend.fleet.scheduling.schedule import Task
 
+WHILE_OPEN = "only while doors on its way are open"
+"""Of a robot that gets somewhere through doors, or by elevators, that are closed at times."""
+
 
 class ConstraintKind(StrEnum):
     """What a constraint is about."""
@@ -57,7 +60,7 @@ def sentence(problem: Problem, constraint: Constraint) -> str:
         case ConstraintKind.OPENING:
             assert robot is not None
             where = f"get there to {what}" if constraint.task else "get to its end"
-            return f"{robot.name} can {where} only while doors on its way are open"
+            return f"{robot.name} can {where} {WHILE_OPEN}"
         case ConstraintKind.HOMEWARD:
             assert robot is not None
             return f"{robot.name} has to get to its end"

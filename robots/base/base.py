@@ -185,15 +185,27 @@ class Base(Effector[BaseBody]):
         before = replace(here, x=here.x + before_m * off[0], y=here.y + before_m * off[1])
         beyond = here.x + beyond_m * off[0], here.y + beyond_m * off[1]
         door = self.ways.door_at(before, beyond)
-        posts = None if door is None else self.ways.posts(door, here)
-        is_open = posts is not None and sees_through(self.body.scan(), here, posts)
-        return None if is_open else door
+        return None if door is None or self._sees_open(door, here) else door
+
+    def _sees_open(self, door: str, here: BasePose) -> bool:
+        """Whether a door, or an elevator, is seen to stand open."""
+        posts = self.ways.posts(door, here)
+        if posts is None:
+            return self.ways.elevator_at(here) == door and self.sees_out()
+        return sees_through(self.body.scan(), here, posts)
 
     def _failed_at(self, met: tuple[float, float], z: float) -> str | None:
         """The robot that has failed and stands where something is met."""
         within_m = self.body.radius_m + _ABOUT_THERE_M
         for robot, (x, y, height) in self.failed.items():
             if math.dist(met, (x, y)) <= within_m and abs(height - z) < ON_FLOOR_M:
+                return robot
+        return None
+
+    def failed_in(self, elevator: str) -> str | None:
+        """The robot that has failed and stands in the cabin of an elevator, at whichever floor."""
+        for robot, (x, y, z) in self.failed.items():
+            if self.ways.elevator_at(BasePose(x, y, 0.0, z)) == elevator:
                 return robot
         return None
 

@@ -8,7 +8,13 @@ from itertools import pairwise
 import numpy as np
 
 from mend.maps.building.building import Building, Caller
-from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of, waiting_points
+from mend.maps.building.cabin import (
+    CABIN_M,
+    cabin_walls,
+    elevator_around,
+    stop_of,
+    waiting_points,
+)
 from mend.maps.building.clearance import clearance_m
 from mend.maps.building.crossing import crossed_by
 from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
@@ -120,6 +126,10 @@ class FloorWays:
                 return self._pose(name, out, out)
         return None
 
+    def elevator_at(self, pose: BasePose) -> str | None:
+        """The elevator in whose cabin a pose of any floor is; None where it is in none."""
+        return elevator_around(self._building, *self._on_map(pose), pose.z)
+
     def floor(self, pose: BasePose) -> str | None:
         """What the floor of a pose is called; None between floors."""
         return self._building.floor_at(pose.z)
@@ -151,12 +161,26 @@ class FloorWays:
         return None
 
     def posts(self, door: str, here: BasePose) -> Posts | None:
-        """Where a door of the floor of a pose hangs; None for an elevator."""
-        found = self._building.floors[self._floor(here)].doors.get(door)
-        if found is None:
+        """Where a door of the floor of a pose hangs: of an elevator right across its cabin.
+
+        None for who is in that cabin.
+        """
+        name = self._floor(here)
+        found = self._building.floors[name].doors.get(door)
+        posts = self._across_cabin(door, name, here) if found is None else found.posts
+        if posts is None:
             return None
-        (ax, ay), (bx, by) = found.posts
+        (ax, ay), (bx, by) = posts
         return self._frame.to_robot(ax, ay), self._frame.to_robot(bx, by)
+
+    def _across_cabin(self, elevator: str, floor: str, here: BasePose) -> Posts | None:
+        """From side to side of a cabin, through its middle, as who is outside sees it."""
+        (x, y), (at_x, at_y) = stop_of(self._building, elevator, floor), self._on_map(here)
+        away_m = math.hypot(x - at_x, y - at_y)
+        if away_m < CABIN_M:
+            return None
+        off = CABIN_M * (at_y - y) / away_m, CABIN_M * (x - at_x) / away_m
+        return (x - off[0], y - off[1]), (x + off[0], y + off[1])
 
     def lane_at(self, here: BasePose, ahead: Point) -> tuple[str, str] | None:
         """The ends of the lane that a pose and a point ahead are on, the one behind first."""

@@ -76,6 +76,10 @@ class Ways(Protocol):
         """Where to get out of the cabin that a pose is in; None where that is in none."""
         ...
 
+    def elevator_at(self, pose: BasePose) -> str | None:
+        """The elevator in whose cabin a pose of any floor is; None where it is in none."""
+        ...
+
     def floor(self, pose: BasePose) -> str | None:
         """What the floor of a pose is called; None where there is none."""
         ...
@@ -89,7 +93,10 @@ class Ways(Protocol):
         ...
 
     def posts(self, door: str, here: BasePose) -> Posts | None:
-        """Where a door of the floor of a pose hangs; None for an elevator."""
+        """Where a door of the floor of a pose hangs: of an elevator right across its cabin.
+
+        None for who is in that cabin.
+        """
         ...
 
     def lane_at(self, here: BasePose, ahead: tuple[float, float]) -> tuple[str, str] | None:
@@ -137,6 +144,10 @@ class StraightWays:
 
     def way_out(self, here: BasePose) -> BasePose | None:  # noqa: ARG002
         """None: it knows of no cabins."""
+        return None
+
+    def elevator_at(self, pose: BasePose) -> str | None:  # noqa: ARG002
+        """None: it knows of none."""
         return None
 
     def floor(self, pose: BasePose) -> str | None:  # noqa: ARG002

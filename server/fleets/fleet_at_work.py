@@ -12,7 +12,7 @@ from mend.errors import RefusalError
 from mend.fleet.asking.spoken_places import SpokenPlaces
 from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
-from mend.fleet.dispatch.leg import Found, Leg
+from mend.fleet.dispatch.leg import Finding, Found, Leg
 from mend.fleet.requests import RequestKind
 from mend.fleet.right_of_way.right_of_way import Yielding
 from mend.robots.link.messages import Poses
@@ -26,6 +26,7 @@ from mend.server.fleets.fleet_book import FleetBook
 from mend.server.fleets.fleet_news import FleetNews
 from mend.server.fleets.fleet_record import Errand, FleetRecord
 from mend.server.fleets.found_ways import FoundWays
+from mend.server.fleets.held_cabins import HeldCabins
 from mend.server.fleets.leg_task import doable_kinds, require_doable, taken_out
 from mend.server.fleets.legs_under_way import LegsUnderWay
 from mend.server.fleets.making_way import who_makes_way
@@ -38,7 +39,7 @@ from mend.server.fleets.robot_findings import finding_of, findings
 from mend.server.fleets.runs import Runs
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Journal
-from mend.server.poses.bases import SeenBase
+from mend.server.poses.bases import SeenBase, in_scene
 from mend.server.sites.requests import FleetOptions
 from mend.server.sites.site import Site
 from mend.tasks.plugins import load_plugins
@@ -92,6 +93,9 @@ class FleetAtWork:
         )
         self._failed_robots = FailedRobots(dispatcher, site.whereabouts, self._book.met_at)
         self._found_ways = FoundWays(dispatcher, self._book.closed_ways, site.whereabouts)
+        self._held_cabins = HeldCabins(
+            dispatcher, self._book.closed_ways, site.whereabouts, places.around, self._is_idle
+        )
         self._charging = Charging(dispatcher, site.battery, places.names)
         self._legs = LegsUnderWay(site, lambda: self._options, runs, self._book)
         self._errands = Errands(
@@ -149,6 +153,9 @@ class FleetAtWork:
     async def _go_on(self) -> None:
         async with self._book.at_once:
             free = [each for each in self.dispatcher.fleet.robots if self._is_free(each)]
+            for robot, to in self._held_cabins.to_send_out(free, self.now_s):
+                self._errands.send(robot, to, None)
+            free = [each for each in free if each not in self._errands.going]
             for robot, charger in self._charging.to_send(free, self.now_s):
                 self._errands.send(robot, charger, None, charges=True)
             unwanted = await asyncio.to_thread(self._decide, self.now_s)
@@ -161,6 +168,7 @@ class FleetAtWork:
             under_way = self.dispatcher.legs_under_way()
             robots = self.dispatcher.fleet.robots.items()
             failed = [name for name, each in robots if not each.works]
+            failed += [each for each in self._held_cabins.holders if each not in failed]
             self._site.keep_off(self.dispatcher.closed_until_s(), failed)
             self._site.note_taken(taken_out(self.dispatcher))
             for execution in self._legs.executions.values():
@@ -190,6 +198,8 @@ class FleetAtWork:
                 self.dispatcher.robot_back(robot, self._book.at(robot), now_s)
         for robot, at in self._failed_robots.moved():
             self.dispatcher.robot_moved(robot, at, now_s)
+        for elevator, found in self._held_cabins.found(now_s):
+            self._note_held(elevator, found, now_s)
         unwanted = self.dispatcher.legs_to_withdraw(now_s)
         while due := [e for e in self.dispatcher.legs_to_begin(now_s) if self._is_free(e.robot)]:
             self._legs.note_begun(due[0], now_s)
@@ -197,6 +207,11 @@ class FleetAtWork:
 
     def _is_free(self, robot: str) -> bool:
         return self._site.rests(robot) and robot not in self._errands.going
+
+    def _is_idle(self, robot: str) -> bool:
+        """Whether it does nothing for anybody, be it in service or not."""
+        busy = robot in self._legs.executions or robot in self._errands.going
+        return not busy and self._site.run_of(robot) is None
 
     @property
     def site(self) -> UUID:
@@ -266,12 +281,25 @@ class FleetAtWork:
         told = f"found of the way between {a} and {b}: {finding}"
         self._book.note(self._book.news.told(told, finder=found.by))
 
+    def _note_held(self, elevator: str, found: Found, now_s: float) -> None:
+        """A robot stays in an elevator's cabin, or is out of it."""
+        try:
+            self._held_cabins.take(found, now_s)
+        except RefusalError as error:
+            log.info("that %s holds %s changes no plan: %s", found.by, elevator, error)
+            return
+        stays = f"stays in {elevator}, which nobody else can ride"
+        told = f"is out of {elevator}" if found.finding is Finding.OPEN else stays
+        self._book.note(self._book.news.told(told, finder=found.by))
+
     def saw(self, robot: str, poses: Poses) -> None:
         """A robot says where it is, by the site's clock."""
         self._meeting_watch.take(robot, poses)
         errand = self._errands.going.get(robot)
         charges = errand is not None and errand.charges
-        if charges and self._charging.may_leave(robot, poses.battery, poses.time):
+        leaves = charges and self._charging.may_leave(robot, poses.battery, poses.time)
+        here = in_scene(self._site.frames[robot], poses.base)[:3]
+        if self._held_cabins.saw(robot, here, poses.time) or leaves:
             self._book.changed.set()
 
     async def _have_met(self, decided: Yielding, place: str | None) -> None:

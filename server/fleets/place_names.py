@@ -42,12 +42,13 @@ class PlaceNames:
 
     def beside(self, x: float, y: float, z: float) -> str | None:
         """The nearest place that robots are sent to, and that one at a position leaves free."""
-        free = [
-            each
-            for each in self._away_m(x, y, z)
-            if each[0] >= BESIDE_M and each[1] in self._called
-        ]
-        return min(free, default=(0.0, None))[1]
+        return next(iter(self.around(x, y, z)), None)
+
+    def around(self, x: float, y: float, z: float) -> list[str]:
+        """All places of a floor that robots are sent to, and that one there leaves free,
+        the nearest first."""
+        free = (e for e in self._away_m(x, y, z) if e[0] >= BESIDE_M and e[1] in self._called)
+        return [each for _, each in sorted(free)]
 
     def away_m(self, place: str, x: float, y: float, z: float) -> float | None:
         """How far a position of the scene is from a place of the same floor; None from others."""

@@ -464,7 +464,9 @@ def _check_intervention(scene: Scene, intervention: Intervention) -> None:
         raise WrongInputError(
             f"'{intervention.act}' is for buildings, and the scene '{scene.name}' is none"
         )
-    if intervention.object is not None and intervention.object not in scene.objects:
+    # What robots carry in a building no scene names: whether it is there its world says.
+    of_scene = intervention.object is None or intervention.object in scene.objects
+    if not (of_scene or scene.setting):
         raise WrongInputError(f"the scene '{scene.name}' has no object '{intervention.object}'")
     if intervention.place is not None and intervention.place not in scene.places:
         raise WrongInputError(f"the scene '{scene.name}' has no place '{intervention.place}'")

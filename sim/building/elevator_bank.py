@@ -193,6 +193,10 @@ class ElevatorBank:
         """The elevators as one robot has them."""
         return RobotElevators(self.cabins, number)
 
+    def wants_ride(self, number: int) -> bool:
+        """Whether a robot wants to ride anywhere."""
+        return any(each.call_of(number) is not None for each in self.cabins.values())
+
     def waits(self, number: int, robot: BuildingRobot) -> list[Cabin]:
         """The elevators for which a robot waits until people press a button."""
         return [

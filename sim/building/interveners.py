@@ -63,7 +63,7 @@ class Interveners:
             case Act.BLOCK:
                 return self._step_in_the_way()
             case Act.RELEASE if intervention.object in self.names:
-                return self._push_aside(self.crowd.robots[self.names.index(intervention.object)])
+                return self._release(self.crowd.robots[self.names.index(intervention.object)])
             case Act.RELEASE:
                 return self._make_way()
             case Act.PUT_IN:
@@ -128,7 +128,24 @@ class Interveners:
         opened = self._open_for_who_waits()
         pressed = self._press_for_who_waits()
         done = bool(stepped_aside) or opened or pressed or self._push_apart()
-        return "" if done else "nothing is in the way of any robot"
+        return "" if done or self._push_out() else "nothing is in the way of any robot"
+
+    def _push_out(self) -> bool:
+        """Push robots out of cabins in which they stand, and want to ride nowhere."""
+        return any(
+            self.elevators.stop_around(robot) is not None
+            and not self.elevators.wants_ride(number)
+            and not self._push_aside(robot)
+            for number, robot in enumerate(self.crowd.robots)
+        )
+
+    def _release(self, robot: BuildingRobot) -> str:
+        """Somebody pushes a robot aside; out of a cabin, they press the buttons there as well."""
+        in_cabin = self.elevators.stop_around(robot) is not None
+        problem = self._push_aside(robot)
+        if not problem and in_cabin:
+            self._press_for_who_waits()
+        return problem
 
     def _push_apart(self) -> bool:
         """Of two robots that stand before each other, and want nothing there, push one aside."""

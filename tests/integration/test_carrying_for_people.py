@@ -16,6 +16,7 @@ from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import RunStatus, RunView
 from mend.server.settings import Settings
 from mend.sim.building.scene import scene_of
+from mend.tasks.intervention import Act, Intervention
 from mend.tasks.scenario import Person
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "buildings"
@@ -212,4 +213,29 @@ async def test_what_is_carried_is_neither_lost_nor_doubled_by_a_restart(
     assert view.result is not None
     assert not view.result.missing
     assert not {"item_missing", "item_taken"} & set(issues_of(events))
+    require_thanks_only_for_help(events)
+
+
+@pytest.mark.slow
+async def test_what_somebody_steals_out_of_a_basket_is_missed_and_put_back(tmp_path: Path) -> None:
+    async with open_service(settings_in(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
+        await service.library.scenes.save("office", office())
+        await service.library.trees.save("task", BRING)
+        begun = await service.runtime.start_run(request(KEEPS_WORD, ["yes"] * 40))
+        with service.journal.subscribe(0) as records:
+            async for record in records:
+                if is_done("collect_item")(ev.any_event.validate_json(record.text)):
+                    break
+        for thing in ("mail", "spoon"):
+            theft = Intervention(act=Act.STEAL, object=thing)
+            await service.runtime.intervene(begun.id, theft)
+        view = await service.runtime.wait_for_end(begun.id)
+        events = list(await service.journal.read(0, 100_000, begun.id))
+    thefts = [e for e in events if isinstance(e, ev.InterventionDone) and e.act == "steal"]
+    assert [(each.object, each.detail) for each in thefts] == [
+        ("mail", ""),
+        ("spoon", "'spoon' is in no robot's basket"),
+    ]
+    assert "item_taken" in issues_of(events)
+    assert view.status is RunStatus.FINISHED, view.result
     require_thanks_only_for_help(events)

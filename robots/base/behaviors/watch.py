@@ -3,13 +3,14 @@
 import math
 from collections.abc import Callable, Sequence
 
-from mend.robots.base.base import Base
+from mend.robots.base.base import Barrier, Base
 from mend.robots.base.behaviors.behavior import (
     Arrive,
     AwaitItem,
     AwaitTaken,
     Charging,
     Drive,
+    GetIn,
     Meet,
     Tell,
 )
@@ -67,7 +68,7 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
                 pose=self._base.body.pose(),
                 goal=taken.to if isinstance(taken, Drive) else None,
                 in_the_way_m=None if barrier is None else barrier.away_m,
-                door=None if barrier is None else barrier.door,
+                door=self._shut_door(barrier),
                 between=None if barrier is None else barrier.between,
                 robot=None if barrier is None else barrier.robot,
                 waited_s=0.0 if since_s is None else now - since_s,
@@ -87,6 +88,14 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
 
     def _copes_with(self, monitor: AnyMonitor, detection: Detection) -> bool:
         return self.going_round.copes_with(monitor.issue, detection)
+
+    def _shut_door(self, barrier: Barrier | None) -> str | None:
+        """The door that bars its way; an elevator that is open for it is none."""
+        taken, elevators = self._progress.taken, self._base.elevators
+        if barrier is None or not isinstance(taken, GetIn):
+            return None if barrier is None else barrier.door
+        into_it = barrier.door == taken.ride.elevator and elevators.is_open_for(taken.ride)
+        return None if into_it else barrier.door
 
     def _standing(self, now_s: float) -> StandingFor | None:
         standing = self._progress.standing
@@ -136,4 +145,5 @@ class BaseWatch(Watch[BaseView, BaseProgress]):
             was_shut=wait.was_shut,
             floor=base.ways.floor(base.body.pose()),
             waited_s=now_s - wait.since_s,
+            failed=None if wait.aboard else base.failed_in(wait.ride.elevator),
         )

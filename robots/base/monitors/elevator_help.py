@@ -1,4 +1,7 @@
-"""`elevator_help`: a base needs somebody for an elevator that it cannot call, or that is stuck."""
+"""`elevator_help`: a base needs somebody for an elevator that it cannot call, or that is stuck.
+
+Or one in whose cabin another robot stands that works no more.
+"""
 
 from typing import Annotated, ClassVar
 
@@ -32,10 +35,17 @@ class ElevatorHelp(BaseMonitor[ElevatorPatience]):
         if awaited is None:
             return None
         why = self._why(awaited)
-        return None if why is None else Detection(camera=LASER, explanation=why)
+        if why is None:
+            return None
+        return Detection(camera=LASER, explanation=why, robot=awaited.failed)
 
     def _why(self, awaited: AwaitedElevator) -> str | None:
         ride, waited_s = awaited.ride, awaited.waited_s
+        if awaited.failed is not None and not awaited.is_open:
+            if waited_s < self.settings.asks_s:
+                return None
+            needs = f"I need {ride.elevator} to get from {ride.from_floor} to {ride.to_floor}"
+            return f"{needs}, and {awaited.failed}, which has failed, has to be pushed out of it"
         if not ride.called and waited_s >= self.settings.asks_s:
             if not awaited.aboard and not awaited.is_open:
                 return f"I need {ride.elevator} to get from {ride.from_floor} to {ride.to_floor}"

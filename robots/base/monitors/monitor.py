@@ -18,7 +18,7 @@ class AwaitedElevator:
     """An elevator that a base waits for, or in which it waits (`aboard`), for `waited_s` so far.
 
     `is_open` for it; `was_shut`: it has been seen shut since. `floor`: where the base is, None
-    between floors.
+    between floors. `failed`: the robot that stands in the cabin and works no more.
     """
 
     ride: Ride
@@ -27,6 +27,7 @@ class AwaitedElevator:
     was_shut: bool
     floor: str | None
     waited_s: float
+    failed: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

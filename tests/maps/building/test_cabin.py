@@ -39,6 +39,37 @@ def test_who_waits_stands_beside_the_lane_where_there_is_room() -> None:
     assert distances_m(np.array([best]), lane)[0] > 0.5
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_who_comes_by_the_lane_gets_to_where_it_waits_past_the_cabin(seed: int) -> None:
+    building = Building(random_building(seed, 2, 5 + seed * 5))
+    for elevator, each in building.document.elevators.items():
+        for name in each.stops:
+            floor, stop = building.floors[name], stop_of(building, elevator, name)
+            cabin = np.array([[*stop, *stop]])
+            (lane,) = {e.between for e in floor.lanes if each.stops[name] in e.between}
+            (end,) = (floor.places[e] for e in lane if e != each.stops[name])
+            on_lane = np.linspace((end.x, end.y), stop, 200)
+            for point in waiting_points(floor, stop, NEEDS_M):
+                assert any(
+                    clearance_m((x, y), point, cabin) > CABIN_M + NEEDS_M - 0.02
+                    and clearance_m((x, y), point, floor.wall_segments) >= NEEDS_M - 0.02
+                    for x, y in on_lane.tolist()
+                )
+
+
+def test_nobody_waits_behind_a_cabin_past_which_there_is_no_room() -> None:
+    floor = Floor(
+        places={"stop": FloorPlace(x=0.0, y=0.0), "hall": FloorPlace(x=6.0, y=0.0)},
+        lanes=(Lane(between=("stop", "hall")),),
+        walls=((-7.0, -1.3, 7.0, -1.3), (-7.0, 1.3, 7.0, 1.3)),
+    )
+    waits = [x for x, _ in waiting_points(floor, (0.0, 0.0), NEEDS_M)]
+    assert len(waits) > 2
+    assert min(waits) > 0.0
+    alone = floor.model_copy(update={"lanes": ()})
+    assert min(x for x, _ in waiting_points(alone, (0.0, 0.0), NEEDS_M)) < -1.0
+
+
 def test_nobody_waits_where_walls_are_all_round() -> None:
     walls = cabin_walls((0.0, 0.0))
     floor = Floor(

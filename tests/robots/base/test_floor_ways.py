@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mend.maps.building.building import Building, BuildingDocument, FloorPlace, PlaceKind
+from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of
 from mend.maps.building.clearance import distances_m
 from mend.maps.building.crossing import crossed_by
 from mend.maps.building.random_building import random_building
@@ -201,7 +202,43 @@ def test_the_walls_around_a_pose_are_known_and_a_cabin_has_a_name() -> None:
     assert len(near)
     assert distances_m(near, walls).max() < 1e-9
     assert np.abs(near - (stop.x, stop.y)).max() < 6.0
-    assert ways.door_at(BasePose(stop.x, stop.y, 0.0), (stop.x + 0.9, stop.y)) == "lift1"
+    inside, beside = BasePose(stop.x, stop.y, 0.0), BasePose(stop.x + 0.9, stop.y, 0.0)
+    assert ways.door_at(inside, (stop.x + 0.9, stop.y)) == "lift1"
+    assert (ways.elevator_at(inside), ways.elevator_at(beside)) == ("lift1", None)
+
+
+def test_an_elevator_is_seen_right_across_its_cabin_by_who_is_outside_of_it() -> None:
+    told = random_building(2, 2, 6).model_dump(mode="json")
+    for floor in told["floors"].values():
+        floor["doors"] = {}
+    building = Building(BuildingDocument.model_validate_json(json.dumps(told)))
+    ways = FloorWays(building, Frame(), 1.0, 0.3)
+    x, y = stop_of(building, "lift1", "F1")
+    assert ways.posts("lift1", BasePose(x, y, 0.0)) is None
+    across = ways.posts("lift1", BasePose(x + 0.9, y, 0.0))
+    assert across is not None
+    assert np.allclose(sorted(across), [(x, y - CABIN_M), (x, y + CABIN_M)])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_way_to_where_a_robot_waits_leads_through_the_cabin(seed: int) -> None:
+    building = Building(random_building(seed, 2, 6 + 5 * seed))
+    room = next(e for e in building.of_kind(PlaceKind.ROOM) if e.startswith("F1/"))
+    away = next(e for e in building.of_kind(PlaceKind.ROOM) if e.startswith("F2/"))
+    here, to = (_pose_at(building, each) for each in (room, away))
+    for turn in range(12):
+        ways = FloorWays(building, Frame(), 1.0, 0.3, turn)
+        (ride,) = ways.rides(here, to)
+        assert ride.wait_at is not None
+        walls = cabin_walls(stop_of(building, ride.elevator, "F1"))
+        way = [(here.x, here.y), *ways.path(here, ride.wait_at)]
+        assert not any(len(crossed_by(np.array([*a, *b]), walls)) for a, b in pairwise(way))
+
+
+def _pose_at(building: Building, place: str) -> BasePose:
+    floor, name = place.split("/")
+    on = building.floors[floor]
+    return BasePose(on.places[name].x, on.places[name].y, 0.0, on.height)
 
 
 def pose_of(frame: Frame, place: FloorPlace, height_m: float) -> BasePose:

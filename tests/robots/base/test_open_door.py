@@ -8,9 +8,10 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from mend.maps.building.cabin import CABIN_M, cabin_walls
 from mend.maps.ray_cast import cast
 from mend.robots.base.body import BasePose, RangeScan
-from mend.robots.base.open_door import sees_through
+from mend.robots.base.open_door import Posts, sees_through
 
 ANGLES = np.linspace(-math.pi, math.pi, 361)
 POSTS = ((-0.5, 0.0), (0.5, 0.0))
@@ -54,3 +55,22 @@ def test_nothing_is_known_of_a_door_from_which_no_beam_comes_back() -> None:
     here = BasePose(0.0, -1.0, 0.0)
     nothing = RangeScan(np.full(len(ANGLES), math.inf), ANGLES, 0.0)
     assert not sees_through(nothing, here, POSTS)
+
+
+def cabin(x: float, y: float, here: BasePose) -> tuple[list[tuple[float, ...]], Posts]:
+    """The walls of a cabin that is shut, and from side to side of it, right across."""
+    away_m = math.hypot(x - here.x, y - here.y)
+    off = CABIN_M * (here.y - y) / away_m, CABIN_M * (x - here.x) / away_m
+    walls = [tuple(each) for each in cabin_walls((x, y)).tolist()]
+    return walls, ((x - off[0], y - off[1]), (x + off[0], y + off[1]))
+
+
+@pytest.mark.parametrize("away_m", [0.9, 1.2, 2.0])
+def test_a_cabin_is_not_seen_into_that_is_shut_and_is_beside_who_stands_in_it(
+    away_m: float,
+) -> None:
+    here = BasePose(0.2, 1.0 - away_m, 0.3)
+    walls, posts = cabin(0.2, 1.0, here)
+    assert not sees_through(scan(here, *walls, noise_m=0.01), here, posts)
+    assert sees_through(scan(here, *robot(0.2, 1.0)), here, posts)
+    assert sees_through(scan(here, *robot(0.4, 0.8, 0.2)), here, posts)

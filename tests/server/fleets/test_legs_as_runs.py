@@ -1,6 +1,7 @@
 """A fleet hands its legs out as runs, once each, and follows what becomes of them."""
 
 import asyncio
+from collections import defaultdict
 from collections.abc import AsyncIterator, Callable, Collection, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
@@ -79,7 +80,7 @@ class FakeSite:
 
     @property
     def frames(self) -> Mapping[str, Frame]:
-        return {}
+        return defaultdict(Frame)
 
     def base_of(self, robot: str) -> BaseLimits:  # noqa: ARG002 - all are alike
         return BaseLimits(radius_m=0.25, speed_m_s=1.0)

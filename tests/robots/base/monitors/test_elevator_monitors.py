@@ -9,6 +9,7 @@ from mend.robots.base.monitors.monitor import AwaitedElevator, BaseView
 from mend.robots.base.monitors.wrong_floor import WrongFloor
 from mend.robots.base.ways import Ride
 from mend.robots.execution.phase import Phase
+from mend.robots.link.messages import Detection
 
 HERE = BasePose(0.0, 0.0, 0.0)
 
@@ -21,6 +22,7 @@ def view(
     was_shut: bool = False,
     floor: str | None = "F1",
     waited_s: float = 10.0,
+    failed: str | None = None,
 ) -> BaseView:
     ride = Ride("lift1", "F1", "F3", HERE, HERE, HERE, HERE, called)
     return BaseView(
@@ -41,6 +43,7 @@ def view(
             was_shut=was_shut,
             floor=floor,
             waited_s=waited_s,
+            failed=failed,
         ),
         scan=RangeScan(np.zeros(1), np.zeros(1), 0.0),
         lost_s=0.0,
@@ -66,6 +69,23 @@ def test_it_asks_people_for_what_it_cannot_do_or_wait_for(
 ) -> None:
     detection = ElevatorHelp.create({}).check(seen)
     assert (None if detection is None else detection.explanation) == asks_for
+
+
+@pytest.mark.parametrize("called", [True, False])
+def test_it_asks_for_a_robot_to_be_pushed_out_that_has_failed_in_the_cabin(*, called: bool) -> None:
+    def asked(*, is_open: bool, waited_s: float) -> Detection | None:
+        seen = view(called=called, failed="robot2", is_open=is_open, waited_s=waited_s)
+        return ElevatorHelp.create({}).check(seen)
+
+    assert asked(is_open=False, waited_s=1.0) is None
+    assert asked(is_open=True, waited_s=10.0) is None
+    detection = asked(is_open=False, waited_s=2.0)
+    assert detection is not None
+    assert detection.robot == "robot2"
+    needs = "I need lift1 to get from F1 to F3"
+    assert detection.explanation == (
+        f"{needs}, and robot2, which has failed, has to be pushed out of it"
+    )
 
 
 @pytest.mark.parametrize(
