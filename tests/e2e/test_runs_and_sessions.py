@@ -112,8 +112,9 @@ async def test_session_that_ends_takes_no_text_along(open_page: OpenPage) -> Non
     page = await open_page("/edit/eket")
     text = page.get_by_label("The file of the task tree")
     await expect(text).to_have_value(re.compile("eket_copy"))
-    # Once it is drawn nothing is asked of the service any more, until something is typed.
+    # Once all that it needs has come nothing is asked of the service, until something is typed.
     await expect(page.get_by_role("tree")).to_be_visible()
+    await page.wait_for_load_state("networkidle")
     await page.context.clear_cookies()
     await text.fill("name: precious\n")
     await expect(page.get_by_text("Your session has ended, anna")).to_be_visible()

@@ -59,8 +59,10 @@ async def test_snapshot_comes_first_then_every_event_after_it(service: ServiceUn
 
 
 async def test_helpers_are_told_when_the_journal_cannot_be_written(
-    service: ServiceUnderTest,
+    service: ServiceUnderTest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    # It would be found out that it can be written, however long a helper takes to connect.
+    monkeypatch.setattr(service.journal.trouble, "_sleep", lambda _: asyncio.Event().wait())
     async with helper(service) as before:
         assert (await receive(before))["type"] == "snapshot"
         service.journal.trouble.began("the disk is full")

@@ -49,7 +49,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def package_files() -> set[str]:
     """Every file of the packages, code or not."""
-    own = {"mend/__init__.py", "mend/errors.py", "mend/py.typed"}
+    own = {"mend/__init__.py", "mend/errors.py", "mend/garbage.py", "mend/py.typed"}
     return own | {
         f"mend/{path.relative_to(ROOT).as_posix()}"
         for package in PACKAGES
