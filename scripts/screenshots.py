@@ -14,6 +14,7 @@ from contextlib import AsyncExitStack
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -103,15 +104,10 @@ SHOTS: dict[str, Shot] = {
 
 
 async def opened(
-    browser: Browser, service: Service, stack: AsyncExitStack, shot: Shot, path: str
+    browser: Browser, service: Service, stack: AsyncExitStack, path: str, **context_options: Any
 ) -> Page:
     """The console at a path, as a helper called Anna sees it."""
-    context = await browser.new_context(
-        base_url=service.url,
-        viewport=PHONE if shot.phone else DESKTOP,
-        device_scale_factor=2 if shot.phone else 1,
-        color_scheme=shot.theme,
-    )
+    context = await browser.new_context(base_url=service.url, **context_options)
     stack.push_async_callback(context.close)
     await context.request.post("/api/session", data={"token": TOKEN})
     await context.add_init_script("localStorage.setItem('mend.helper', '\"Anna\"')")
@@ -127,7 +123,15 @@ async def take(browser: Browser, name: str, shot: Shot) -> None:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         settings = Settings(data_dir=folder, port=0, token=TOKEN)
         service = await stack.enter_async_context(open_service(settings))
-        open_page: Callable[[str], Awaitable[Page]] = partial(opened, browser, service, stack, shot)
+        open_page: Callable[[str], Awaitable[Page]] = partial(
+            opened,
+            browser,
+            service,
+            stack,
+            viewport=PHONE if shot.phone else DESKTOP,
+            device_scale_factor=2 if shot.phone else 1,
+            color_scheme=shot.theme,
+        )
         page = await shot.situation(service, open_page)
         await page.wait_for_timeout(SETTLE_MS)
         picture = small_enough(await page.screenshot())

@@ -11,6 +11,7 @@ import sys
 import tempfile
 from collections.abc import Iterable, Sequence
 from contextlib import AsyncExitStack
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -24,8 +25,9 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "doubles")]
 from bare_chromium import CHROMIUM, launch
 from console_in_browser import TOKEN
 from console_situations import SITUATIONS, Situation
+from screenshots import opened
 
-from mend.server.composition import Service, open_service
+from mend.server.composition import open_service
 from mend.server.settings import Settings
 
 SHEETS = ROOT / "docs" / "images" / "views"
@@ -63,23 +65,9 @@ async def sheet_of(browser: Browser, situation: Situation) -> Pixels:
         )
         service = await stack.enter_async_context(open_service(settings))
 
-        async def open_page(path: str) -> Page:
-            return await opened(browser, service, stack, path)
-
+        open_page = partial(opened, browser, service, stack, viewport=SIZES[0])
         page = await situation(service, open_page)
         return beside_each_other([await photograph(page, size) for size in SIZES])
-
-
-async def opened(browser: Browser, service: Service, stack: AsyncExitStack, path: str) -> Page:
-    """The console at a path, as a helper called Anna sees it."""
-    context = await browser.new_context(base_url=service.url, viewport=SIZES[0])
-    stack.push_async_callback(context.close)
-    await context.request.post("/api/session", data={"token": TOKEN})
-    await context.add_init_script("localStorage.setItem('mend.helper', '\"Anna\"')")
-    page = await context.new_page()
-    await page.goto(path)
-    await page.get_by_role("status").filter(has_text="Connected").wait_for()
-    return page
 
 
 async def photograph(page: Page, size: ViewportSize) -> Pixels:
