@@ -1,5 +1,5 @@
 // One press for several questions, where that is safe; held back for a moment, as it cannot be taken back.
-import { useEffect, useState } from "preact/hooks";
+import { useLayoutEffect, useState } from "preact/hooks";
 import { helperName } from "../state/preferences";
 import * as rest from "../wire/rest";
 import type { BatchWayView } from "../wire/types";
@@ -9,7 +9,8 @@ export function ForAll({ ways, prompts }: { ways: readonly BatchWayView[]; promp
   const [chosen, setChosen] = useState<BatchWayView | null>(null);
   const [mistake, setMistake] = useState("");
   const all = prompts.join(" ");
-  useEffect(() => {
+  // As soon as Undo is on record, and not a frame later: nothing may be sent after it.
+  useLayoutEffect(() => {
     if (chosen === null) return;
     const timer = window.setTimeout(() => {
       setChosen(null);
