@@ -55,7 +55,7 @@ from mend.server.api.services import ObservedJournal, Services, WorldList
 from mend.server.dialogues.attendance import Attendance
 from mend.server.documents import DocumentLibrary
 from mend.server.fleets.fleets import Fleets
-from mend.server.models import RobotModels
+from mend.server.models.robot_models import RobotModels
 from mend.server.off_loop import OffLoop
 from mend.server.pace import Sleep
 from mend.server.poses.feed import PoseSource

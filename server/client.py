@@ -11,6 +11,7 @@ from mend.server.client_connection import HelperEndpoint
 from mend.server.client_dialogues import DialogueCalls
 from mend.server.client_documents import DocumentCalls
 from mend.server.client_errors import RefusedError, UnreachableError
+from mend.server.client_models import ModelCalls
 from mend.server.client_runs import RunCalls
 from mend.server.client_sites import SiteCalls
 from mend.server.client_speech import SpeechStream
@@ -33,7 +34,7 @@ READY_PAUSE_S = 0.1
 ENDS = (RunFinished, RunFailed, RunAborted)
 
 
-class MendClient(DocumentCalls, RunCalls, DialogueCalls, SiteCalls, AccessCalls):
+class MendClient(DocumentCalls, RunCalls, DialogueCalls, SiteCalls, AccessCalls, ModelCalls):
     """Talks to one service; an asynchronous context manager.
 
     Every method raises `RefusedError` or `UnreachableError`. What changes something is sent under

@@ -25,7 +25,8 @@ from mend.server.journal.run_index import RunPage
 from mend.server.journal.sqlite import IN_MEMORY, SqliteJournal
 from mend.server.library import Library, build_library
 from mend.server.listening import listen, reachable_host
-from mend.server.models import RobotModels
+from mend.server.models.own_models import OwnModels
+from mend.server.models.robot_models import RobotModels, WorldModels
 from mend.server.off_loop import OffLoop
 from mend.server.poses.feed import PoseFeed
 from mend.server.poses.record import PoseRecords
@@ -144,8 +145,9 @@ async def _open(
         off_loop,
         utc_now=lambda: datetime.now(UTC),
     )
-    models = RobotModels(adapters.values())
-    poses = PoseFeed(registry.show_poses, models.address, _pose_records(settings))
+    models = _models(settings, WorldModels(adapters.values()), journal, off_loop)
+    poses = PoseFeed(registry.show_poses, models.drawn, _pose_records(settings))
+    models.own.changed = poses.models_changed
     worlds = SimulatedWorlds(adapters)
     sites = Sites(
         worlds,
@@ -312,6 +314,20 @@ def _pose_records(settings: Settings) -> PoseRecords | None:
     if not settings.record_poses or str(settings.journal_path) == IN_MEMORY:
         return None
     return PoseRecords(settings.journal_path.with_suffix(".poses"))
+
+
+def _models(
+    settings: Settings, worlds: WorldModels, journal: SqliteJournal, off_loop: OffLoop
+) -> RobotModels:
+    own = OwnModels(
+        settings.models_path,
+        journal,
+        settings.limits,
+        off_loop,
+        utc_now=lambda: datetime.now(UTC),
+        taken=worlds.__contains__,
+    )
+    return RobotModels(worlds, own)
 
 
 def _operator_mail(settings: Settings, public_url: str | None) -> OperatorMail:

@@ -15,6 +15,8 @@ SetLimitName = Literal[
     "hello_s",
     "departed_robots",
     "uploaded_chars",
+    "model_bytes",
+    "models_bytes",
     "waiting_chars",
     "check_s",
     "running_runs",
@@ -83,6 +85,10 @@ class Limits(BaseModel):
     """Robots without connection and run that are still listed; those gone longest are forgotten."""
     uploaded_chars: AtLeastOne = 32 * 1024**2
     """Characters of all uploaded files of one kind together."""
+    model_bytes: AtLeastOne = 64 * 1024**2
+    """Bytes of the files of one uploaded robot model, unpacked."""
+    models_bytes: AtLeastOne = 512 * 1024**2
+    """Bytes of all uploaded robot models as they are kept, packed."""
     waiting_chars: AtLeastOne = 64 * 1024**2
     """Characters of what waits to be read and checked as it is large; one piece each may wait."""
     check_s: Seconds = 120.0

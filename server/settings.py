@@ -155,6 +155,11 @@ class Settings(BaseSettings):
         """The key that push services know the service by, likewise."""
         return self._beside_journal(".push_key")
 
+    @property
+    def models_path(self) -> Path | None:
+        """The folder of uploaded robot models, likewise."""
+        return self._beside_journal(".models")
+
     def _beside_journal(self, suffix: str) -> Path | None:
         in_memory = str(self.journal_path) == IN_MEMORY
         return None if in_memory else self.journal_path.with_suffix(suffix)

@@ -121,6 +121,8 @@ class Transcript:
         self,
         _event: ev.DocumentKept
         | ev.DocumentDeleted
+        | ev.ModelKept
+        | ev.ModelDeleted
         | ev.SignedIn
         | ev.SignInFailed
         | ev.SignedOut

@@ -64,7 +64,8 @@ DEEDS: frozenset[str] = frozenset(
         "run_started", "run_paused", "run_resumed", "run_aborted", "intervention_accepted",
         "answered", "claimed", "released", "deadline_extended", "help_reported",
         "promise_taken_back",
-        "document_kept", "document_deleted", "signed_in", "sign_in_failed", "signed_out",
+        "document_kept", "document_deleted", "model_kept", "model_deleted",
+        "signed_in", "sign_in_failed", "signed_out",
         "access_changed", "site_opened", "site_closed", "node_taken", "request_changed",
         "fleet_told", "errand_begun", "push_subscribed", "push_ended",
         "autonomy_set", "breakpoint_set", "breakpoint_removed", "leaf_let_go", "leaf_preferred",
@@ -212,6 +213,10 @@ def _what_of_access(event: ev.Event) -> str | None:
             return f"{'replaced' if replaced else 'uploaded'} the {kind} '{name}'"
         case ev.DocumentDeleted(kind=kind, name=name):
             return f"deleted the {kind} '{name}'"
+        case ev.ModelKept(name=name, replaced=replaced):
+            return f"{'replaced' if replaced else 'uploaded'} the robot model '{name}'"
+        case ev.ModelDeleted(name=name):
+            return f"deleted the robot model '{name}'"
         case ev.AccessChanged(what="added", principal=name, role=role):
             return f"added '{name}' as {with_article(role)}"
         case ev.AccessChanged(what="rotated", principal=name):

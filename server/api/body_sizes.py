@@ -9,18 +9,24 @@ from mend.server.documents import DocumentKind
 
 SHORT_BODY_BYTES = 64 * 1024
 LARGE_BODY_BYTES = 8 * 1024 * 1024
+MODEL_BODY_BYTES = 32 * 1024 * 1024
 
 TAKE_LARGE_BODIES = frozenset(
     {"start_run"} | {f"{do}_{kind}" for do in ("check", "upload", "put") for kind in DocumentKind}
 )
 """The operations that take files, or scripted answers by the thousand."""
 
+TAKE_MODELS = frozenset({"put_model", "put_own_model"})
+"""The operations that take a robot's meshes."""
+
 
 def most_bytes(method: str, path: str) -> int:
     """How large a body may be at a door that is not open to everybody."""
     endpoint = endpoint_of(method, path)
-    large = endpoint is not None and endpoint.operation in TAKE_LARGE_BODIES
-    return LARGE_BODY_BYTES if large else SHORT_BODY_BYTES
+    operation = None if endpoint is None else endpoint.operation
+    if operation in TAKE_MODELS:
+        return MODEL_BODY_BYTES
+    return LARGE_BODY_BYTES if operation in TAKE_LARGE_BODIES else SHORT_BODY_BYTES
 
 
 class IncomingBodies:

@@ -23,7 +23,7 @@ from mend.server.fleets.fleets import Fleets
 from mend.server.journal.journal import Journal
 from mend.server.journal.subscriptions import Subscribers
 from mend.server.journal.writer import CommitStatistics
-from mend.server.models import RobotModels
+from mend.server.models.robot_models import RobotModels
 from mend.server.off_loop import OffLoop
 from mend.server.poses.feed import PoseSource
 from mend.server.push.push import Push

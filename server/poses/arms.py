@@ -4,8 +4,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from mend.robots.link.messages import Hello, PoseLayout, Poses, PoseValues, ShownPose
+from mend.server.models.robot_models import DrawnModel
 from mend.server.poses.bases import in_scene, joined, seen_from
-from mend.server.poses.layout import ArmLayout
+from mend.server.poses.layout import ArmLayout, arm_layout
 from mend.tasks.frames import Frame
 
 
@@ -48,14 +49,10 @@ class OtherArms:
             self._told.pop(hello.robot, None)
         self._shows[hello.robot] = shows
 
-    def layouts(self, but: str, model: Callable[[str], str | None]) -> list[ArmLayout]:
-        """Of all that have shown an arm `but` one; `model` has the address of model files."""
+    def layouts(self, but: str, model: Callable[[str], DrawnModel | None]) -> list[ArmLayout]:
+        """Of all that have shown an arm `but` one; `model` finds how it is drawn."""
         return [
-            ArmLayout(
-                robot=robot,
-                model=None if shows.model is None else model(shows.model),
-                joints=shows.joints,
-            )
+            arm_layout(robot, shows, None if shows.model is None else model(shows.model))
             for robot in self._frames
             if robot != but and (shows := self._shows.get(robot)) is not None
         ]

@@ -7,6 +7,7 @@ from typing import Protocol
 from uuid import UUID
 
 from mend.robots.link.messages import IDENTITY, Hello, PoseLayout, Poses
+from mend.server.models.robot_models import DrawnModel
 from mend.server.poses.arms import OtherArms
 from mend.server.poses.bases import Bases, in_scene
 from mend.server.poses.frame import Frame, encode
@@ -23,8 +24,8 @@ from mend.server.runtime.run_state import RunState
 ShowPoses = Callable[[str, float], None]
 """Has a robot send its poses so often per second of its clock; 0 is not at all."""
 
-ModelAddress = Callable[[str], str | None]
-"""Where the model files of a name are, if they are here."""
+FindModel = Callable[[str], DrawnModel | None]
+"""How the model of a name is drawn, if its files are here."""
 
 
 ROUND_S = 0.1
@@ -75,7 +76,7 @@ class RunPoses:
     """
 
     def __init__(
-        self, state: RunState, show: ShowPoses, model: ModelAddress, records: PoseRecords | None
+        self, state: RunState, show: ShowPoses, model: FindModel, records: PoseRecords | None
     ) -> None:
         self._state = state
         self._show = show
@@ -109,10 +110,10 @@ class RunPoses:
         self._ask()
 
     def _lay_out(self, hello: Hello, shows: PoseLayout) -> None:
-        address = None if shows.model is None else self._model(shows.model)
+        model = None if shows.model is None else self._model(shows.model)
         arms = self._arms.layouts(hello.robot, self._model)
         drives = bool(self._driving)
-        layout = lay_out(self._state, hello, shows, address, drives=drives, arms=arms)
+        layout = lay_out(self._state, hello, shows, model, drives=drives, arms=arms)
         if layout == self.layout:
             return
         self.layout, self.frame, self._poses = layout, None, None
@@ -120,6 +121,11 @@ class RunPoses:
             self._records.keep_layout(layout)
         for watcher in self._watchers:
             watcher.lay_out(layout)
+
+    def models_changed(self) -> None:
+        """There are other models than before: whoever watches draws the robots anew."""
+        if self._shown is not None:
+            self._lay_out(*self._shown)
 
     def take(self, robot: str, time_s: float, poses: Poses) -> None:
         """Pass poses on; `time_s` is of the run's clock. What fits no layout is left out."""
@@ -237,7 +243,7 @@ class PoseFeed:
     """The poses of every run; implements `PoseSource`. Without `records` none are kept."""
 
     def __init__(
-        self, show: ShowPoses, model: ModelAddress, records: PoseRecords | None = None
+        self, show: ShowPoses, model: FindModel, records: PoseRecords | None = None
     ) -> None:
         self._show = show
         self._model = model
@@ -267,6 +273,11 @@ class PoseFeed:
         if self._records is not None:
             self._records.close(run)
             self._records.forget(run)
+
+    def models_changed(self) -> None:
+        """There are other models of robots than before."""
+        for poses in self._runs.values():
+            poses.models_changed()
 
     def of(self, run: UUID) -> RunPoses | None:
         return self._runs.get(run)

@@ -5,6 +5,7 @@ from typing import Literal
 from uuid import UUID
 
 from mend.robots.link.messages import Hello, PoseLayout, Poses
+from mend.server.models.robot_models import DrawnModel
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.views import View
 from mend.tasks.scene import Place, Scene
@@ -59,6 +60,8 @@ class ArmLayout(View):
     robot: str
     model: str | None
     joints: list[str]
+    own_colors: bool = False
+    """Whether the model is drawn in the colours that it says."""
 
 
 class Layout(View):
@@ -80,6 +83,8 @@ class Layout(View):
     """Whose base frames each frame has, in this order; none where no robot drives."""
     arms: list[ArmLayout] = []
     """The robots beside `robot` that show an arm."""
+    own_colors: bool = False
+    """Whether the model is drawn in the colours that it says."""
 
     def fits(self, poses: Poses) -> bool:
         """Whether poses hold what this says."""
@@ -91,12 +96,12 @@ def lay_out(
     state: RunState,
     hello: Hello,
     shows: PoseLayout,
-    model: str | None,
+    model: DrawnModel | None,
     *,
     drives: bool = False,
     arms: Sequence[ArmLayout] = (),
 ) -> Layout:
-    """The layout of a run with this robot; `model` is the address of its model files.
+    """The layout of a run with this robot; `model` is how it is drawn.
 
     `drives`: whether any robot of the run does. `arms`: those of others.
     """
@@ -104,7 +109,8 @@ def lay_out(
     return Layout(
         run=state.id,
         robot=hello.robot,
-        model=model,
+        model=None if model is None else model.address,
+        own_colors=model is not None and model.own_colors,
         joints=shows.joints,
         objects=[
             ObjectLayout(
@@ -125,6 +131,16 @@ def lay_out(
         simulated=hello.simulated,
         robots=list(state.frames) if drives else [],
         arms=list(arms),
+    )
+
+
+def arm_layout(robot: str, shows: PoseLayout, model: DrawnModel | None) -> ArmLayout:
+    """What frames tell of the arm of a robot that shows this."""
+    return ArmLayout(
+        robot=robot,
+        model=None if model is None else model.address,
+        joints=shows.joints,
+        own_colors=model is not None and model.own_colors,
     )
 
 

@@ -21,8 +21,15 @@ class GatedRobot:
     `started` are the parts that it was told to place, in order.
     """
 
-    def __init__(self, name: str, boot: str, room: dict[str, Any] | None) -> None:
+    def __init__(
+        self,
+        name: str,
+        boot: str,
+        room: dict[str, Any] | None,
+        shows: dict[str, Any] | None = None,
+    ) -> None:
         self.name = name
+        self._shows = shows
         self.started: list[str] = []
         self.looks = 0
         self.may_finish, self.may_look = asyncio.Event(), asyncio.Event()
@@ -40,7 +47,7 @@ class GatedRobot:
         self._socket = socket
         await self._say(
             type="hello", protocol=1, robot=self.name, boot=self._boot, room=self._room,
-            behaviors=["pick_and_place"], cameras=[],
+            behaviors=["pick_and_place"], cameras=[], shows=self._shows,
             reach={"x": 0.0, "y": 0.0, "min_m": 0.2, "max_m": 0.6},
         )  # fmt: skip
         with suppress(ConnectionClosed, asyncio.CancelledError):
@@ -51,6 +58,11 @@ class GatedRobot:
                     if isinstance(message, Command):
                         await self._say(type="taken", command=message.id)
                         group.create_task(self._obey(message.id, message.body.model_dump()))
+
+    async def show(self, *joints: float) -> None:
+        """Tell how its arm is held, with nothing in its gripper."""
+        tool = [0.3, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+        await self._say(type="poses", joints=joints, tool=tool, opening_m=0.05, objects=[])
 
     async def until(self, started: int = 0, looks: int = 0) -> None:
         """Wait until it was told so many things, in all."""
@@ -101,10 +113,16 @@ class GatedRobot:
 
 @asynccontextmanager
 async def gated_robot(
-    url: str, token: str, name: str, *, boot: str = "b", room: dict[str, Any] | None = ROOM
+    url: str,
+    token: str,
+    name: str,
+    *,
+    boot: str = "b",
+    room: dict[str, Any] | None = ROOM,
+    shows: dict[str, Any] | None = None,
 ) -> AsyncIterator[GatedRobot]:
     """A robot that is there until the end of the block, and gone without a word then."""
-    robot = GatedRobot(name, boot, room)
+    robot = GatedRobot(name, boot, room, shows)
     headers = {"Authorization": f"Bearer {token}"}
     async with connect(url, additional_headers=headers, compression=None) as socket:
         working = asyncio.create_task(robot.work(socket))

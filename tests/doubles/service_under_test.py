@@ -27,7 +27,9 @@ from mend.server.journaled_documents import JournaledDocuments
 from mend.server.library import Library, build_library
 from mend.server.limits import LimitName, Limits
 from mend.server.listening import listen
-from mend.server.models import RobotModels
+from mend.server.models.own_models import OwnModels
+from mend.server.models.robot_models import RobotModels, WorldModels
+from mend.server.off_loop import OffLoop
 from mend.server.pace import Sleep
 from mend.server.poses.feed import PoseFeed
 from mend.server.poses.record import PoseRecords
@@ -135,7 +137,7 @@ def build(
         worlds=FakeWorlds(),
         sites=sites,
         fleets=Fleets(sites, runs, journal, poses, utc_now=utc_now),
-        models=RobotModels(models),
+        models=_models(WorldModels(models), journal, chosen, utc_now),
         poses=poses,
         access=access,
         deeds=deeds,
@@ -147,6 +149,21 @@ def build(
     service = ServiceUnderTest(app, runs, journal, chosen, poses, access, deeds)
     weakref.finalize(service, shutil.rmtree, folder)
     return service
+
+
+def _models(
+    worlds: WorldModels, journal: SqliteJournal, settings: Settings, utc_now: Callable[[], datetime]
+) -> RobotModels:
+    """The journal is in memory, and yet models are kept, beside where it would be."""
+    own = OwnModels(
+        settings.models_path,
+        journal,
+        settings.limits,
+        OffLoop(),
+        utc_now=utc_now,
+        taken=worlds.__contains__,
+    )
+    return RobotModels(worlds, own)
 
 
 def _no_sites(journal: SqliteJournal, library: Library, utc_now: Callable[[], datetime]) -> Sites:

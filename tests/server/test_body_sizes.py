@@ -16,8 +16,10 @@ from mend.server.access.permissions import ENDPOINTS
 from mend.server.access.roles import Role
 from mend.server.api.body_sizes import (
     LARGE_BODY_BYTES,
+    MODEL_BODY_BYTES,
     SHORT_BODY_BYTES,
     TAKE_LARGE_BODIES,
+    TAKE_MODELS,
     most_bytes,
 )
 
@@ -25,7 +27,7 @@ YAML = {"content-type": "application/yaml"}
 
 
 def test_every_door_for_large_bodies_is_there() -> None:
-    assert {each.operation for each in ENDPOINTS} >= TAKE_LARGE_BODIES
+    assert {each.operation for each in ENDPOINTS} >= TAKE_LARGE_BODIES | TAKE_MODELS
 
 
 @pytest.mark.parametrize(
@@ -37,6 +39,8 @@ def test_every_door_for_large_bodies_is_there() -> None:
         ("POST", "/api/runs", LARGE_BODY_BYTES),
         ("POST", f"/api/dialogues/{UUID(int=7)}/answers", SHORT_BODY_BYTES),
         ("POST", "/api/access/principals", SHORT_BODY_BYTES),
+        ("PUT", "/api/models/lamp", MODEL_BODY_BYTES),
+        ("PUT", "/api/robots/own_model", MODEL_BODY_BYTES),
         ("DELETE", "/api/trees/eket", SHORT_BODY_BYTES),
         ("POST", "/api/nothing/here", SHORT_BODY_BYTES),
     ],

@@ -9,7 +9,7 @@ import pytest
 from service_under_test import build
 
 from mend.errors import NotFoundError
-from mend.server.models import RobotModels
+from mend.server.models.robot_models import WorldModels
 from mend.sim.world import WorldUnavailableError
 
 
@@ -97,11 +97,11 @@ async def test_anything_else_is_not_found(client: httpx.AsyncClient, path: str) 
 @pytest.mark.parametrize("name", ["../secret.stl", "meshes/../../secret.stl", "/etc/passwd", "\0"])
 def test_a_name_never_leads_out_of_the_folder(folder: Path, name: str) -> None:
     with pytest.raises(NotFoundError):
-        RobotModels([Drawn(folder)]).file("box", name)  # type: ignore[list-item]
+        WorldModels([Drawn(folder)]).file("box", name)  # type: ignore[list-item]
 
 
 def test_a_model_has_an_address_where_its_files_are(folder: Path) -> None:
-    models = RobotModels([Drawn(folder), NotInstalled()])  # type: ignore[list-item]
+    models = WorldModels([Drawn(folder), NotInstalled()])  # type: ignore[list-item]
     assert models.address("box") == "/api/models/box/robot.urdf"
     assert models.address("absent") is None
     assert models.address("nobody") is None

@@ -22,6 +22,8 @@ OF_NO_RUN = {
     "access_changed",
     "document_deleted",
     "document_kept",
+    "model_kept",
+    "model_deleted",
     "fleet_told",
     "leg_begun",
     "leg_ended",

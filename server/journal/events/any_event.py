@@ -67,6 +67,8 @@ from mend.server.journal.events.service_events import (
     AccessChanged,
     DocumentDeleted,
     DocumentKept,
+    ModelDeleted,
+    ModelKept,
     PushEnded,
     PushSubscribed,
     SignedIn,
@@ -143,6 +145,8 @@ AnyEvent = Annotated[
     | WayFound
     | DocumentKept
     | DocumentDeleted
+    | ModelKept
+    | ModelDeleted
     | SignedIn
     | SignInFailed
     | SignedOut

@@ -26,6 +26,24 @@ class DocumentDeleted(ServiceEvent):
     author: Author | None
 
 
+class ModelKept(ServiceEvent):
+    """A robot's model was uploaded; `version` is another one for other files."""
+
+    type: Literal["model_kept"] = "model_kept"
+    name: str
+    version: str
+    replaced: bool
+    author: Author | None
+
+
+class ModelDeleted(ServiceEvent):
+    """An uploaded model was deleted."""
+
+    type: Literal["model_deleted"] = "model_deleted"
+    name: str
+    author: Author | None
+
+
 class AddressCount(EventModel):
     """How often something came from an address."""
 

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from shown_run import AT, SHOWS, driving_state, hello, poses
 
 from mend.robots.link.messages import PoseLayout, PoseValues
+from mend.server.models.robot_models import DrawnModel
 from mend.server.poses.bases import joined, seen_from
 from mend.server.poses.feed import PoseFeed, RunPoses
 from mend.server.poses.frame import DecodedFrame, decode
@@ -28,7 +29,8 @@ def asked() -> list[tuple[str, float]]:
 @pytest.fixture
 def run(asked: list[tuple[str, float]]) -> RunPoses:
     feed = PoseFeed(
-        lambda robot, rate: asked.append((robot, rate)), lambda model: f"/models/{model}"
+        lambda robot, rate: asked.append((robot, rate)),
+        lambda model: DrawnModel(f"/models/{model}", own_colors=False),
     )
     return feed.open(driving_state(("left", LEFT), ("right", OPPOSITE)))
 

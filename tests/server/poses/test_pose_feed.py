@@ -10,6 +10,7 @@ from sample_events import RUN
 from shown_run import SHOWS, driving_state, hello, poses, run_state
 
 from mend.robots.link.messages import IDENTITY, PoseLayout, Poses
+from mend.server.models.robot_models import DrawnModel
 from mend.server.poses.feed import PoseFeed, RunPoses, Watcher
 from mend.server.poses.frame import time_of
 from mend.server.poses.layout import Layout
@@ -29,9 +30,13 @@ def asked() -> Asked:
     return Asked()
 
 
+def drawn(model: str) -> DrawnModel:
+    return DrawnModel(f"/api/models/{model}/robot.urdf", own_colors=False)
+
+
 @pytest.fixture
 def feed(asked: Asked) -> PoseFeed:
-    return PoseFeed(asked.show, lambda model: f"/api/models/{model}/robot.urdf")
+    return PoseFeed(asked.show, drawn)
 
 
 @pytest.fixture
@@ -236,3 +241,16 @@ async def test_the_last_that_was_shown_is_passed_on_at_the_end(asked: Asked) -> 
         driven.at("first", 1.0, 2.0)
         driven.feed.close(RUN)
         assert await time_from(watcher) == 1.0
+
+
+async def test_another_model_has_the_robot_drawn_anew(asked: Asked) -> None:
+    found: dict[str, DrawnModel] = {}
+    feed = PoseFeed(asked.show, found.get)
+    run = feed.open(run_state())
+    run.robot_connected(hello())
+    with run.watched() as watcher:
+        assert (await layout_from(watcher)).model is None
+        found["pr2"] = DrawnModel("/api/models/pr2/1/robot.urdf", own_colors=True)
+        feed.models_changed()
+        layout = await layout_from(watcher)
+    assert (layout.model, layout.own_colors) == ("/api/models/pr2/1/robot.urdf", True)

@@ -8,7 +8,7 @@ from workcell_hands import Hands, do
 
 from mend.robots.arm.shown_arm import JointedBody
 from mend.robots.link.messages import ShownPose
-from mend.server.models import RobotModels
+from mend.server.models.robot_models import WorldModels
 from mend.sim.workcell.adapter import adapter
 from mend.sim.workcell.world import WorkcellWorld
 from mend.tasks.intervention import Act
@@ -56,7 +56,7 @@ def test_the_joints_are_those_that_move_in_the_model(world: WorkcellWorld) -> No
 
 
 def test_every_mesh_that_is_drawn_is_served_and_lean() -> None:
-    models = RobotModels([adapter])
+    models = WorldModels([adapter])
     assert models.address(adapter.model) == "/api/models/pr2/robot.urdf"
     urdf = ElementTree.parse(models.file("pr2", "robot.urdf")).getroot()
     meshes = {

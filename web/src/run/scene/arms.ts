@@ -20,6 +20,9 @@ export interface Tool {
   readonly at: Vector3;
 }
 
+/** What a layout says of how a robot is drawn. */
+type Shown = Pick<Layout, "model" | "own_colors" | "joints">;
+
 interface Arm {
   readonly root: Group;
   show(pose: ArmPose): void;
@@ -31,7 +34,7 @@ export function createArms(layout: Layout, changed: () => void, modelMissing: ()
   const root = new Group();
   let disposed = false;
 
-  const add = (model: string | null, joints: readonly string[]): Arm => {
+  const add = ({ model, own_colors, joints }: Shown): Arm => {
     const base = new Group();
     let drawn: DrawnRobot | null = null;
     let latest: ArmPose | null = null;
@@ -47,7 +50,7 @@ export function createArms(layout: Layout, changed: () => void, modelMissing: ()
     };
     if (model === null) join(createGripper());
     else {
-      loadRobot(model, joints, changed).then(join, () => {
+      loadRobot({ address: model, ownColors: own_colors }, joints, changed).then(join, () => {
         if (!disposed) modelMissing();
         join(createGripper());
       });
@@ -62,8 +65,8 @@ export function createArms(layout: Layout, changed: () => void, modelMissing: ()
     };
   };
 
-  const own = add(layout.model, layout.joints);
-  const others = layout.arms.map(({ model, joints }) => add(model, joints));
+  const own = add(layout);
+  const others = layout.arms.map(add);
   const named = [...(others.length > 0 ? [[layout.robot, own] as const] : []), ...layout.arms.map((each, index) => [each.robot, others[index] as Arm] as const)];
   root.add(own.root);
   return {

@@ -1,45 +1,62 @@
 // The robot in the scene: its model where there is one, else a two-finger gripper at the tool point.
-import { BoxGeometry, type BufferGeometry, Color, Group, LoadingManager, Mesh, MeshLambertMaterial, SRGBColorSpace } from "three";
-import { STLLoader } from "three/addons/loaders/STLLoader.js";
-import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
-import URDFLoader, { type URDFRobot } from "urdf-loader";
+import {
+  BoxGeometry,
+  Color,
+  Group,
+  LoaderUtils,
+  LoadingManager,
+  type Material,
+  Mesh,
+  MeshLambertMaterial,
+  SRGBColorSpace,
+} from "three";
+import URDFLoader, { type URDFRobot, type URDFVisual } from "urdf-loader";
 import type { ArmPose } from "./decode";
+import { hasOwnColors, loadMesh } from "./meshes";
 import { setPose } from "./poses";
 
-// As the simulator paints it; the model's own colours are for debugging.
+// As the simulator paints its robot, whose own colours are for debugging.
 const ARM = new Color().setRGB(0.8, 0.8, 0.82, SRGBColorSpace);
 const GRIPPER = new Color().setRGB(0.35, 0.36, 0.38, SRGBColorSpace);
-const CREASE_RAD = 0.6;
 
 export interface DrawnRobot {
   readonly root: Group;
   show(arm: ArmPose): void;
 }
 
+/** A robot's model, and whether it is drawn in its own colours or as the simulator paints it. */
+export interface Model {
+  readonly address: string;
+  readonly ownColors: boolean;
+}
+
 /** Load a robot's model. Rejects when it cannot be had; its meshes may come after it (`changed`). */
 export async function loadRobot(
-  address: string,
+  { address, ownColors }: Model,
   joints: readonly string[],
   changed: () => void,
 ): Promise<DrawnRobot> {
   const arm = new MeshLambertMaterial({ color: ARM });
   const gripper = new MeshLambertMaterial({ color: GRIPPER });
+  const paint = ownColors ? (robot: URDFRobot) => paintBare(robot, arm) : (robot: URDFRobot) => paintAll(robot, arm, gripper);
   let robot: URDFRobot | null = null;
   // Each mesh as it comes: of a file that two robots load at once only one of them hears the end.
   const came = () => {
-    if (robot !== null) paint(robot, arm, gripper);
+    if (robot !== null) paint(robot);
     changed();
   };
   const manager = new LoadingManager();
   const loader = new URDFLoader(manager);
-  const meshes = new STLLoader(manager);
-  loader.loadMeshCb = (url, _manager, _material, done) => {
-    const failed = (error: unknown) => done(new Group(), error as Error);
-    const take = (geometry: BufferGeometry) => {
-      done(new Mesh(toCreasedNormals(geometry, CREASE_RAD)));
-      came();
-    };
-    meshes.load(url, take, undefined, failed);
+  // A package is a folder beside the description.
+  loader.packages = (name) => LoaderUtils.extractUrlBase(address) + name;
+  loader.loadMeshCb = (url, meshManager, material, done) => {
+    loadMesh(url, meshManager, material).then(
+      (mesh) => {
+        done(mesh);
+        came();
+      },
+      (error: unknown) => done(new Group(), error as Error),
+    );
   };
   const read = await loader.loadAsync(address);
   robot = read;
@@ -54,17 +71,33 @@ export async function loadRobot(
   };
 }
 
-function paint(robot: URDFRobot, arm: MeshLambertMaterial, gripper: MeshLambertMaterial): void {
-  for (const [name, link] of Object.entries(robot.links)) {
-    for (const visual of link.children.filter((each) => "isURDFVisual" in each)) {
-      visual.traverse((each) => {
-        if (!(each instanceof Mesh)) return;
-        each.material = name.startsWith("r_gripper_") ? gripper : arm;
-        each.castShadow = true;
-        each.receiveShadow = true;
-      });
-    }
+function paintAll(robot: URDFRobot, arm: Material, gripper: Material): void {
+  for (const { link, visual } of visualsOf(robot)) paintVisual(visual, link.startsWith("r_gripper_") ? gripper : arm);
+}
+
+/** What says no colour is grey like an arm, and all else stays as it is. */
+function paintBare(robot: URDFRobot, arm: Material): void {
+  for (const { visual } of visualsOf(robot)) {
+    const said = visual.urdfNode;
+    const mesh = said?.querySelector("mesh")?.getAttribute("filename") ?? "";
+    const colored = said?.querySelector("material") != null || hasOwnColors(mesh);
+    paintVisual(visual, colored ? null : arm);
   }
+}
+
+function visualsOf(robot: URDFRobot): { link: string; visual: URDFVisual }[] {
+  return Object.entries(robot.links).flatMap(([link, { children }]) =>
+    children.filter((each): each is URDFVisual => "isURDFVisual" in each).map((visual) => ({ link, visual })),
+  );
+}
+
+function paintVisual(visual: URDFVisual, material: Material | null): void {
+  visual.traverse((each) => {
+    if (!(each instanceof Mesh)) return;
+    if (material !== null) each.material = material;
+    each.castShadow = true;
+    each.receiveShadow = true;
+  });
 }
 
 const FINGER_M = [0.07, 0.012, 0.02] as const;

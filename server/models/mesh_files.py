@@ -1,0 +1,78 @@
+"""Meshes and pictures of a model: whether each is what its name says, and what it names itself."""
+
+from collections.abc import Mapping
+
+from mend.errors import WrongInputError
+from mend.server.models.archive_names import PICTURES, kind_of, named_file
+from mend.server.models.xml_events import read_elements
+
+STL_HEAD_BYTES = 84
+STL_FACET_BYTES = 50
+MAGIC = {".png": b"\x89PNG\r\n\x1a\n", ".jpg": b"\xff\xd8\xff", ".jpeg": b"\xff\xd8\xff"}
+
+
+def files_named_in(name: str, content: bytes) -> list[str]:
+    """The files that a mesh or picture is drawn with. Raises `WrongInputError`."""
+    kind = kind_of(name)
+    if kind == ".dae":
+        return _pictures_of_collada(name, content)
+    good = {".stl": _is_stl, ".obj": _is_obj}.get(kind)
+    if not (content.startswith(MAGIC[kind]) if good is None else good(content)):
+        raise WrongInputError(f"{name}: it is no {kind.removeprefix('.').upper()} file")
+    return []
+
+
+def _is_stl(content: bytes) -> bool:
+    if len(content) < STL_HEAD_BYTES:
+        return _is_stl_text(content)
+    facets = int.from_bytes(content[STL_HEAD_BYTES - 4 : STL_HEAD_BYTES], "little")
+    return len(content) == STL_HEAD_BYTES + STL_FACET_BYTES * facets or _is_stl_text(content)
+
+
+def _is_stl_text(content: bytes) -> bool:
+    return content.lstrip()[:5].lower() == b"solid" and b"endsolid" in content
+
+
+def _is_obj(content: bytes) -> bool:
+    """Text with a corner; the materials that it may name are nobody's."""
+    if b"\0" in content:
+        return False
+    return any(line.startswith(b"v ") for line in content.splitlines())
+
+
+def _pictures_of_collada(name: str, content: bytes) -> list[str]:
+    reader = _Collada(name)
+    read_elements(content, name, reader)
+    return reader.pictures
+
+
+class _Collada:
+    """Which pictures a COLLADA file names, be it as in version 1.4 or in 1.5."""
+
+    def __init__(self, file: str) -> None:
+        self.pictures: list[str] = []
+        self._file = file
+        self._within: list[str] = []
+        self._said = ""
+
+    def begin(self, name: str, attributes: Mapping[str, str]) -> None:  # noqa: ARG002
+        name = name.rpartition(":")[2]
+        if not self._within and name != "COLLADA":
+            raise WrongInputError(f"{self._file}: it is no DAE file: it begins with <{name}>")
+        self._within.append(name)
+        self._said = ""
+
+    def text(self, text: str) -> None:
+        if self._names_picture():
+            self._said += text
+
+    def end(self, name: str) -> None:  # noqa: ARG002
+        if self._names_picture() and self._said.strip():
+            self.pictures.append(named_file(self._said.strip(), self._file, PICTURES))
+        self._said = ""
+        self._within.pop()
+
+    def _names_picture(self) -> bool:
+        return self._within[-2:] == ["image", "init_from"] or self._within[-3:] == [
+            "image", "init_from", "ref",
+        ]  # fmt: skip

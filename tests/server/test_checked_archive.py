@@ -1,0 +1,171 @@
+"""What may be a robot's model is kept, and whatever could hurt who draws it is refused."""
+
+import contextlib
+import io
+import zipfile
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from small_model import BARE, DAE, DESCRIPTION, OBJ, PNG, STL, packed
+
+from mend.errors import WrongInputError
+from mend.server.models.checked_archive import check_archive, check_description
+
+ROOM = 10**6
+
+
+def urdf(inside: str) -> bytes:
+    return f"<robot name='r'><link name='a'/>{inside}</robot>".encode()
+
+
+def shape(inside: str) -> bytes:
+    return urdf(f"<link name='b'><visual>{inside}</visual></link>" + JOINT)
+
+
+JOINT = "<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>"
+
+
+def test_an_archive_keeps_what_the_description_needs_and_nothing_else() -> None:
+    checked = check_archive(packed({"notes.txt": b"ours", "meshes/spare.stl": STL}), ROOM)
+    with zipfile.ZipFile(io.BytesIO(checked.archive)) as archive:
+        assert archive.namelist() == [
+            "lamp/meshes/foot.stl", "meshes/base.obj", "meshes/shade.dae", "robot.urdf",
+        ]  # fmt: skip
+        assert archive.read("robot.urdf").decode() == DESCRIPTION
+
+
+def test_other_files_are_another_version() -> None:
+    version = check_archive(packed(), ROOM).version
+    assert check_archive(packed({"notes.txt": b"ours"}), ROOM).version == version
+    assert check_archive(packed({"meshes/base.obj": OBJ + b"v 1 1 1\n"}), ROOM).version != version
+
+
+def test_pictures_of_meshes_belong_to_them() -> None:
+    image = b"<library_images><image><init_from>../red.png</init_from></image></library_images>"
+    shade = DAE.replace(b"<library_geometries>", image + b"<library_geometries>")
+    checked = check_archive(packed({"meshes/shade.dae": shade, "red.png": PNG}), ROOM)
+    with zipfile.ZipFile(io.BytesIO(checked.archive)) as archive:
+        assert "red.png" in archive.namelist()
+    with pytest.raises(WrongInputError, match=r"needs red\.png, which is not"):
+        check_archive(packed({"meshes/shade.dae": shade}), ROOM)
+
+
+def test_a_description_that_needs_no_files_may_come_alone() -> None:
+    assert check_description(BARE.encode()).version
+    with pytest.raises(WrongInputError, match="send both in one archive"):
+        check_description(DESCRIPTION.encode())
+
+
+EXPANDING = b'<!DOCTYPE r [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><robot name="&b;"/>'
+DEEP = b"<robot name='r'>" + b"<a>" * 300 + b"</a>" * 300 + b"</robot>"
+LOOP = (
+    "<link name='b'/><link name='c'/>"
+    "<joint name='j' type='fixed'><parent link='b'/><child link='c'/></joint>"
+    "<joint name='k' type='fixed'><parent link='c'/><child link='b'/></joint>"
+)
+MIMIC = (
+    "<link name='b'/><joint name='j' type='fixed'><parent link='a'/><child link='b'/>"
+    "<mimic joint='{}'/></joint>"
+)
+
+
+@pytest.mark.parametrize(
+    ("description", "why"),
+    [
+        (b"no XML", "line 1: it is not XML"),
+        (b"<robot name='r'>", "it is not XML"),
+        (EXPANDING, "document type"),
+        (b"<robot name='r'><link name='&other;'/></robot>", "it is not XML"),
+        (DEEP, "levels deep"),
+        (b"<sdf/>", "outermost element is <robot>, not <sdf>"),
+        (b"<robot xmlns:xacro='x'><xacro:arm/></robot>", "expand it first"),
+        (b"<robot name='r'/>", "one link has no parent, and not 0"),
+        (urdf("<link name='b'/>"), "one link has no parent, and not 2"),
+        (urdf("<link name='a'/>"), "the link 'a' is there more than once"),
+        (urdf("<link/>"), "has no name"),
+        (urdf("<link name='b'/>" + JOINT + JOINT), "the joint 'j' is there more than once"),
+        (urdf(JOINT), "the joint 'j' has no link as its child"),
+        (urdf(JOINT.replace("fixed", "elastic")), "of no type of"),
+        (urdf(LOOP), "in a loop"),
+        (urdf(MIMIC.format("k")), "mimics 'k', which is not there"),
+        (urdf(MIMIC.format("j")), "mimics one that mimics it"),
+        (shape("<geometry/>"), "without one shape"),
+        (shape("<geometry><torus/></geometry>"), "not torus"),
+        (shape("<geometry><box size='1 2'/></geometry>"), "3 numbers with blanks between"),
+        (shape("<geometry><box size='1 2 nan'/></geometry>"), "3 numbers"),
+        (shape("<geometry><mesh/></geometry>"), "a <mesh> has no 'filename'"),
+        (urdf("<material name='m'><color/></material>"), "a <color> has no 'rgba'"),
+    ],
+)
+def test_a_description_that_cannot_be_drawn_is_refused(description: bytes, why: str) -> None:
+    with pytest.raises(WrongInputError, match=why):
+        check_archive(packed({"robot.urdf": description}), ROOM)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "http://elsewhere/arm.stl", "file:///etc/passwd.stl", "//elsewhere/arm.stl",
+        "/etc/arm.stl", "../arm.stl", "meshes/../../arm.stl", "package://../arm.stl",
+        "package://a/../../arm.stl", "meshes\\arm.stl", "meshes/%2e%2e/arm.stl", "arm.stl?x",
+        "arm.stl#x", "arm.exe", "robot.urdf", "data:model/stl,x.stl", "a" * 300 + ".stl",
+    ],
+)  # fmt: skip
+def test_a_description_names_nothing_outside_its_archive(said: str) -> None:
+    mesh = shape(f"<geometry><mesh filename='{said}'/></geometry>")
+    with pytest.raises(WrongInputError, match=r"robot\.urdf names"):
+        check_archive(packed({"robot.urdf": mesh}), ROOM)
+
+
+@pytest.mark.parametrize("name", ["../evil.stl", "/evil.stl", "a/../../evil", "a\\b", "a\nb"])
+def test_no_file_of_an_archive_leads_out_of_it(name: str) -> None:
+    with pytest.raises(WrongInputError, match="names are relative"):
+        check_archive(packed({name: b""}), ROOM)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "why"),
+    [
+        ("lamp/meshes/foot.stl", b"GIF89a", "it is no STL file"),
+        ("lamp/meshes/foot.stl", STL[:-1], "it is no STL file"),
+        ("meshes/base.obj", b"\0v 1 2 3", "it is no OBJ file"),
+        ("meshes/base.obj", b"", "it is no OBJ file"),
+        ("meshes/shade.dae", b"<svg/>", "begins with <svg>"),
+        ("meshes/shade.dae", EXPANDING, "document type"),
+        ("meshes/shade.dae", DAE[:200], "it is not XML"),
+        ("meshes/shade.dae", None, "which is not in the archive"),
+    ],
+)
+def test_meshes_are_what_their_names_say(name: str, content: bytes | None, why: str) -> None:
+    with pytest.raises(WrongInputError, match=why):
+        check_archive(packed({name: content}), ROOM)
+
+
+def test_text_as_stl_is_one_too() -> None:
+    text = b"solid foot\nfacet normal 0 0 1\nendfacet\nendsolid foot\n"
+    assert check_archive(packed({"lamp/meshes/foot.stl": text}), ROOM).version
+
+
+def test_no_more_is_unpacked_than_there_is_room_for() -> None:
+    bomb = packed({"meshes/base.obj": OBJ + b"#" * 10**7})
+    assert len(bomb) < 10**5
+    with pytest.raises(WrongInputError, match="may have 1000000 bytes in all") as refused:
+        check_archive(bomb, ROOM)
+    assert refused.value.limit == "model_bytes"
+
+
+def test_many_files_are_refused() -> None:
+    with pytest.raises(WrongInputError, match="more than 500 files"):
+        check_archive(packed({f"{number}.txt": b"" for number in range(501)}), ROOM)
+
+
+@given(st.binary(max_size=200), st.integers(0, 2000), st.binary(min_size=1, max_size=8))
+def test_bytes_that_are_no_archive_are_refused_with_a_sentence(
+    noise: bytes, at: int, damage: bytes
+) -> None:
+    good = packed()
+    at %= len(good)
+    for sent in (noise, good[:at], good[:at] + damage + good[at + len(damage) :]):
+        with contextlib.suppress(WrongInputError):
+            check_archive(sent, ROOM)
