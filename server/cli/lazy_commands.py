@@ -29,6 +29,7 @@ SUMMARIES = {
     "map": "Build, extract and clean up vector maps.",
     "journal": "Check, prune, back up and restore a journal.",
     "scene": "Make up scenes.",
+    "steer": "Steer a run of a service that is there.",
     "request": "Ask a building's robots for something.",
     "site": "Open, list, show and close worlds that stay.",
 }

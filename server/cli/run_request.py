@@ -14,6 +14,7 @@ from mend.server.cli.failures import CommandLineError
 from mend.server.cli.journals import new_run_journal
 from mend.server.cli.run_files import RunFiles
 from mend.server.runtime.requests import RunRequest
+from mend.server.runtime.steering_views import SetAutonomy, SteerNode
 from mend.server.settings import Settings, load_settings
 from mend.server.sites.requests import SiteRequest
 from mend.tasks.scenario import Scenario
@@ -23,6 +24,8 @@ T = TypeVar("T", bound=BaseModel)
 ARGUMENTS: dict[type[BaseModel], tuple[str, ...]] = {
     RunRequest: ("tree",),
     SiteRequest: ("scene",),
+    SteerNode: ("node",),
+    SetAutonomy: (),
 }
 """What is no option of its command."""
 

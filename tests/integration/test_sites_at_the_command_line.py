@@ -1,52 +1,18 @@
 """Sites at the command line: opened, listed, shown, used by a run, and closed."""
 
-import asyncio
-import os
-import sys
-from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from console_script import Command, Outcome, command_of
 from forked_mend import FORKED, mend_command
 from service_process import ServiceProcess, service_process
 
-from mend.server.cli import main
 from mend.server.client import MendClient
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """What a command came to."""
-
-    code: int | None
-    told: str
-    complaints: str
-
-
-Site = Callable[..., Awaitable[Outcome]]
-"""`await site(service, *arguments)`: `mend site` with them, which asks a service."""
-
-
 @pytest.fixture
-def site(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Site:
-    """In this process: each of its own would take as long to begin as all else."""
-    for name in [each for each in os.environ if each.startswith("MEND_")]:
-        monkeypatch.delenv(name)
-
-    async def call(service: ServiceProcess, *arguments: str) -> Outcome:
-        monkeypatch.setattr(sys, "argv", ["mend", "site", *arguments, "--url", service.url])
-        code = await asyncio.to_thread(exit_code)
-        captured = capsys.readouterr()
-        return Outcome(code, captured.out, captured.err)
-
-    return call
-
-
-def exit_code() -> int:
-    with pytest.raises(SystemExit) as ended:
-        main()
-    return int(ended.value.code or 0)
+def site(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Command:
+    return command_of("site", monkeypatch, capsys)
 
 
 async def run(service: ServiceProcess, *arguments: str) -> Outcome:
@@ -60,7 +26,7 @@ TABLETOP = ("--world", "tabletop", "--speed", "max")
 
 @pytest.mark.slow(2)
 async def test_a_run_is_done_at_a_site_and_what_is_not_there_is_said_in_a_sentence(
-    site: Site, tmp_path: Path
+    site: Command, tmp_path: Path
 ) -> None:
     async with service_process(tmp_path, forked=FORKED) as service:
         nowhere = await run(service, "order", "--site", "order")
@@ -68,10 +34,10 @@ async def test_a_run_is_done_at_a_site_and_what_is_not_there_is_said_in_a_senten
             2,
             "mend: no site 'order' is open; open are: none\n",
         )
-        opened = await site(service, "open", "order", *TABLETOP)
+        opened = await site(service.url, "open", "order", *TABLETOP)
         name = opened.told.strip()
         assert (opened.code, opened.complaints) == (0, "")
-        listed = await site(service, "list")
+        listed = await site(service.url, "list")
         assert listed.told.startswith(f"{name}\torder\ttabletop\t")
         assert listed.told.endswith("\t1 of 1\n")
         ran = await run(service, "order", "--site", name[:8], "--answers", "none")
@@ -80,20 +46,20 @@ async def test_a_run_is_done_at_a_site_and_what_is_not_there_is_said_in_a_senten
         async with MendClient(service.url) as client:
             (done,) = await client.runs()
             assert (await client.run(done.id)).options["site"] == name
-        shown = await site(service, "show", "order")
+        shown = await site(service.url, "show", "order")
         assert shown.told.startswith(f"site {name}: order in tabletop (seed 0, speed max)\n")
         assert f"pr2-{name[:8]} (pr2): connected, free" in shown.told
         assert " is at " in shown.told.splitlines()[-1]
-        closed = await site(service, "close", name)
+        closed = await site(service.url, "close", name)
         assert (closed.code, closed.told) == (0, f"site {name} is closed\n")
-        assert (await site(service, "list")).told == ""
+        assert (await site(service.url, "list")).told == ""
 
         for _ in range(2):
-            assert (await site(service, "open", "order", *TABLETOP)).code == 0
-        either = await site(service, "show", "order")
+            assert (await site(service.url, "open", "order", *TABLETOP)).code == 0
+        either = await site(service.url, "show", "order")
         assert either.code == 2
         assert "'order' may be any of the sites" in either.complaints
-        unknown = await site(service, "open", "nowhere", *TABLETOP)
+        unknown = await site(service.url, "open", "nowhere", *TABLETOP)
         assert (unknown.code, unknown.complaints.count("\n")) == (2, 1)
-        wrong = await site(service, "open", "order", "--seed", "-1")
+        wrong = await site(service.url, "open", "order", "--seed", "-1")
         assert wrong.complaints.startswith("mend: --seed must be greater than or equal to 0")
