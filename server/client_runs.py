@@ -12,6 +12,7 @@ from mend.server.client_wire import Wire
 from mend.server.journal.events import (
     AnyEvent,
     Event,
+    RecordingBegun,
 )
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.steering_views import AnySteering, NodeSteeringView, SteeringView
@@ -112,6 +113,11 @@ class RunCalls(Wire):
     async def camera(self, run: UUID, camera: str) -> bytes:
         """What a camera sees now, as JPEG."""
         return (await self._request("GET", f"/api/runs/{run}/cameras/{camera}")).content
+
+    async def record(self, run: UUID, seconds: float, helper: str) -> RecordingBegun:
+        """Have all cameras of a run recorded for so long, in real time."""
+        body = {"seconds": seconds, "helper": helper}
+        return await self._post(f"/api/runs/{run}/recordings", RecordingBegun, body)
 
     async def take_leaf(self, run: UUID, node: str, helper: str) -> RunSummary:
         """Have a leaf be a person's, who does it themselves; a robot that sees it done says so."""

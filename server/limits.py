@@ -37,6 +37,7 @@ SetLimitName = Literal[
     "helper_messages_per_s",
     "requests_per_s",
     "push_subscriptions",
+    "recorded_bytes",
 ]
 """Those that can be set, as `Limits` has them."""
 
@@ -129,3 +130,5 @@ class Limits(BaseModel):
     """Requests of one principal with a credential of their own that are answered in a second."""
     push_subscriptions: AtLeastOne = 100
     """Devices of one principal that are called; without principals all are of one."""
+    recorded_bytes: AtLeastOne = 64 * 1024**2
+    """Bytes of what is recorded of the cameras of one run, clips of its issues not counted."""

@@ -120,6 +120,12 @@ class Settings(BaseSettings):
     """How many events may wait for one slow client before it is cut off."""
     record_poses: bool = True
     """Whether to record beside the journal where everything was, for replay."""
+    record_before_fault_s: Annotated[float, Field(ge=0, le=60, allow_inf_nan=False)] = 0.0
+    """How long all cameras are recorded before a fault, besides robots' own clips; 0: not."""
+    record_after_fault_s: Annotated[float, Field(ge=0, le=60, allow_inf_nan=False)] = 5.0
+    """How long they are after it."""
+    recording_period_s: Annotated[float, Field(ge=0.1, le=10, allow_inf_nan=False)] = 0.5
+    """How long after one picture of a camera the next one comes, at the earliest."""
     keep: KeepSettings = KeepSettings()
     """How long ended runs are kept."""
     limits: Limits = Limits()

@@ -241,8 +241,13 @@ class Transcript:
         return []
 
     @lines.register
-    def _(self, _event: ev.ClipRecorded) -> list[Line]:
+    def _(self, _event: ev.ClipRecorded | ev.CamerasRecorded) -> list[Line]:
         return []
+
+    @lines.register
+    def _(self, event: ev.RecordingBegun) -> list[Line]:
+        text = f"has the cameras recorded for {event.seconds:g} s"
+        return [_line(event, event.by, text, Tone.DEED)]
 
     @lines.register
     def _(self, _event: ev.DialogueOpened) -> list[Line]:

@@ -62,7 +62,7 @@ class Audit:
 DEEDS: frozenset[str] = frozenset(
     {
         "run_started", "run_paused", "run_resumed", "run_aborted", "intervention_accepted",
-        "answered", "claimed", "released", "deadline_extended", "help_reported",
+        "recording_begun", "answered", "claimed", "released", "deadline_extended", "help_reported",
         "promise_taken_back",
         "document_kept", "document_deleted", "model_kept", "model_deleted",
         "signed_in", "sign_in_failed", "signed_out",
@@ -168,6 +168,8 @@ def _what(event: ev.Event) -> str | None:
             return "aborted the run" + (f": {reason}" if reason else "")
         case ev.InterventionAccepted(act=act, object=part):
             return f"intervened: {act}" + (f" '{part}'" if part else "")
+        case ev.RecordingBegun(seconds=seconds):
+            return f"had the cameras recorded for {seconds:g} s"
         case ev.NodeTaken(name=name, helper=helper):
             return f"took '{name}' as '{helper}', to do it"
         case ev.SteeringEvent():

@@ -81,6 +81,7 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     Endpoint("get_camera_picture", "GET", _RUN + "/cameras/{camera}", Role.VIEWER),
     Endpoint("get_layout", "GET", _RUN + "/layout", Role.VIEWER),
     Endpoint("get_poses", "GET", _RUN + "/poses", Role.VIEWER),
+    Endpoint("record_cameras", "POST", _RUN + "/recordings", Role.OPERATOR),
     Endpoint("start_run", "POST", "/api/runs", Role.OPERATOR),
     Endpoint("pause_run", "POST", _RUN + "/pause", Role.OPERATOR),
     Endpoint("resume_run", "POST", _RUN + "/resume", Role.OPERATOR),

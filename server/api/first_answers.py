@@ -43,7 +43,7 @@ async def _view_of(event: ev.Event, services: Services) -> tuple[int, BaseModel,
             return 200, await services.runs.run_summary(run), None
         case ev.InterventionAccepted(intervention=intervention):
             return 201, intervention, None
-        case ev.Answered():
+        case ev.Answered() | ev.RecordingBegun():
             return 201, event, None
         case ev.DeadlineExtended() | ev.HelpReported() | ev.PromiseTakenBack():
             return 200, event, None

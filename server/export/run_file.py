@@ -69,6 +69,9 @@ def pictures_of(event: ev.Event) -> Iterator[ShownPicture]:
     if isinstance(event, ev.ClipRecorded):
         for each in event.pictures:
             yield ShownPicture(each.picture, event.robot, FOREARM, each.time)
+    elif isinstance(event, ev.CamerasRecorded):
+        for shown in event.pictures:
+            yield ShownPicture(shown.picture, event.robot, shown.camera, shown.time)
     elif isinstance(event, ev.IssueRaised | ev.UnseenHelp) and event.picture is not None:
         seen = event.detection
         camera = UNTOLD_CAMERA if seen is None else seen.camera

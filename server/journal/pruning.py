@@ -27,7 +27,7 @@ RUNS_AT_ONCE = 20
 PICTURES_AT_ONCE = 200
 
 LIVE = "live"
-PICTURE_TYPES = ("issue_raised", "clip_recorded")
+PICTURE_TYPES = ("issue_raised", "clip_recorded", "cameras_recorded")
 BOOT_TYPES = ("node_started", "robot_back")
 
 
@@ -254,7 +254,7 @@ def _delete_some(connection: sqlite3.Connection) -> _Gone | None:
 
 
 def _pictures(bodies: Iterable[str]) -> list[str]:
-    """The pictures that events name: of an issue, and of a clip."""
+    """The pictures that events name: of an issue, of a clip, and of a film."""
     named = []
     for event in _read(bodies):
         named.append(event.get("picture"))

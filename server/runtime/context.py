@@ -23,6 +23,8 @@ class RunSettings:
     `max_helped_retries`: so often a robot tries one leaf again because somebody has helped.
     `max_times_gone`: so often a leaf is done again whose result was seen gone. Such a leaf has not
     failed, so it is no attempt; the bound is for a person who takes it away each time.
+    `record_before_fault_s`, `record_after_fault_s`, `recording_period_s`: how long cameras are
+    recorded around faults, and how long a picture comes after the other; in real time.
     """
 
     help_window_s: float = 30.0
@@ -32,6 +34,9 @@ class RunSettings:
     max_helped_retries: int = 20
     max_times_gone: int = 10
     claim_lease_s: float = 30.0
+    record_before_fault_s: float = 0.0
+    record_after_fault_s: float = 0.0
+    recording_period_s: float = 0.5
     limits: Limits = field(default_factory=Limits)
 
 

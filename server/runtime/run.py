@@ -29,6 +29,7 @@ from mend.robots.link.messages import (
 from mend.server.errors import BusyError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import DuplicateReceiptError, JournalWriteError, Receipt
+from mend.server.runtime.camera_recorder import CameraRecorder, CameraSource
 from mend.server.runtime.claims import Claims
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.cutting_short import CuttingShort
@@ -70,6 +71,7 @@ class Run:
         dialogues: DialogueDriver,
         hardware: Hardware,
         poses: PoseSink,
+        cameras: CameraSource,
     ) -> None:
         self._context = context
         self._proxies = proxies
@@ -108,6 +110,7 @@ class Run:
             start=self._allocation.start,
         )
         self._patience = RobotPatience(context, hardware, self._presence)
+        self._recorder = CameraRecorder(context, proxies, cameras, self._inbox.tell)
         self._giving_up = GivingUp(context, proxies, self._reports, cutting_short)
         self.ended = asyncio.Event()
         self._aborting = False
@@ -132,6 +135,10 @@ class Run:
     @property
     def steering(self) -> RunSteering:
         return self._steering
+
+    @property
+    def recorder(self) -> CameraRecorder:
+        return self._recorder
 
     @property
     def claims(self) -> Claims:
@@ -170,6 +177,7 @@ class Run:
     async def _work_off(self) -> None:
         state = self._context.state
         await self._presence.begin()
+        self._recorder.begin()
         await self._settle()
         while not state.status.ended:
             item = await self._next_item()
@@ -237,6 +245,7 @@ class Run:
     async def _stop_everything(self) -> None:
         self.ended.set()
         self._presence.end()
+        self._recorder.end()
         self._inbox.refuse_all(ConflictError(f"the run has ended ({self._context.state.status})"))
         if self._context.state.status.ended:
             for proxy in self._proxies.values():
@@ -300,8 +309,10 @@ class Run:
     async def _after_report(self, proxy: RobotProxy, body: object) -> None:
         """What a report says about what the robot is busy with, once it is committed."""
         match body:
-            case IssueDetected(interrupts=True):
-                proxy.doing = RobotActivity.RETREATING
+            case IssueDetected(interrupts=interrupts):
+                self._recorder.fault(proxy.robot)
+                if interrupts:
+                    proxy.doing = RobotActivity.RETREATING
             case Holding():
                 proxy.hold_execution(body)
             case Finished():

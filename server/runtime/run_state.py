@@ -76,6 +76,8 @@ class RunState:
         """The leaves that people do themselves."""
         self.dialogues: dict[UUID, DialogueState] = {}
         self.lost: set[str] = set()
+        self.recorded_bytes = 0
+        """Of its cameras' pictures, without those of issues and their clips."""
         self.accepted: dict[str, ev.InterventionAccepted] = {}
         self.intervened: set[str] = set()
         """Commands that were carried out, but for those that had been accepted: of these there may
@@ -256,6 +258,14 @@ class RunState:
     @_apply.register
     def _(self, event: ev.ClipRecorded) -> None:
         self.dialogues[event.dialogue].fold(event)
+
+    @_apply.register
+    def _(self, event: ev.CamerasRecorded) -> None:
+        self.recorded_bytes += event.size_bytes
+
+    @_apply.register
+    def _(self, _event: ev.RecordingBegun) -> None:
+        """What comes of it is told by others."""
 
     @_apply.register
     def _(self, event: ev.DialogueOpened) -> None:

@@ -22,6 +22,7 @@ from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal
 from mend.server.journal.run_index import UNREADABLE, IndexedRun, RunPage
 from mend.server.refusals import Refusals
+from mend.server.runtime.camera_recorder import CameraSource
 from mend.server.runtime.choosing import potentials_for
 from mend.server.runtime.clock import RunClock, SimulatedClock
 from mend.server.runtime.context import RunContext, RunSettings
@@ -258,7 +259,8 @@ class Runtime:
             partial(self._send_mail, state),
             lambda: self._attendance.idle(self._states.open_dialogues()),
         )
-        run = Run(context, proxies, dialogues, hardware, self._poses.open(state))
+        cameras = CameraSource(self._robots.take_picture, self._monotonic, asyncio.sleep)
+        run = Run(context, proxies, dialogues, hardware, self._poses.open(state), cameras)
         try:
             self._owners.give(run)
         except ConflictError:
@@ -418,6 +420,15 @@ class Runtime:
         """What may be said of a node now. Raises `NotFoundError`, or `ConflictError` at its end."""
         running = await self._running(run)
         return running.steering.offers(node)
+
+    async def record(
+        self, run: UUID, seconds: float, by: str, author: ev.Author | None = None
+    ) -> ev.RecordingBegun:
+        """Have the cameras of a run recorded. Raises as `CameraRecorder.record`."""
+        running = await self._running(run)
+        begun = await running.request(lambda: running.recorder.record(seconds, by, author))
+        assert isinstance(begun, ev.RecordingBegun), "it is what was asked for"
+        return begun
 
     async def intervene(
         self, run: UUID, intervention: Intervention, author: ev.Author | None = None

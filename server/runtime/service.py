@@ -11,6 +11,7 @@ from mend.server.journal.events import (
     DeadlineExtended,
     HelpReported,
     PromiseTakenBack,
+    RecordingBegun,
 )
 from mend.server.journal.run_index import RunPage
 from mend.server.runtime.requests import RunRequest
@@ -191,6 +192,12 @@ class RunService(Protocol):
         self, run: UUID, intervention: Intervention, author: Author | None = None
     ) -> None:
         """Have a person do something in a simulated world. Raises `ConflictError` if it cannot."""
+        ...
+
+    async def record(
+        self, run: UUID, seconds: float, by: str, author: Author | None = None
+    ) -> RecordingBegun:
+        """Have a run's cameras recorded. Raises `ConflictError` without any, or without room."""
         ...
 
     async def picture(self, run: UUID, camera: str, robot: str | None = None) -> CameraPicture:

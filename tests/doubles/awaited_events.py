@@ -1,5 +1,6 @@
 """The journal of a service under test, as soon as enough is in it."""
 
+import asyncio
 from collections.abc import Callable
 
 from mend.server.composition import Service
@@ -18,3 +19,10 @@ async def events_until(
             if is_enough(events):
                 return events
     raise AssertionError("the journal ended")
+
+
+async def when(service: Service, so: Callable[[ev.Event], bool]) -> ev.Event:
+    """The first event of which something is so, also of those that were."""
+    async with asyncio.timeout(60.0):
+        events = await events_until(service, lambda each: so(each[-1]))
+    return events[-1]

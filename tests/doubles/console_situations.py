@@ -465,6 +465,21 @@ async def booked_request(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def recorded_cameras(service: Service, open_page: OpenPage) -> Page:
+    """Somebody has the cameras recorded."""
+    run = await ask(service)
+    page = await open_page(f"/runs/{run}")
+    await expect(page.get_by_role("link", name="Questions 1")).to_be_visible(timeout=PATIENCE_MS)
+    scene = page.get_by_role("tab", name="Scene")
+    cameras = page.get_by_role("region", name="Cameras")
+    await expect(scene.or_(cameras)).to_be_visible()
+    if await scene.count() > 0:
+        await scene.click()
+    await cameras.get_by_role("button", name="Record").click()
+    await expect(cameras.get_by_role("button", name="Recording …")).to_be_visible()
+    return page
+
+
 SITUATIONS: dict[str, Situation] = {
     each.__name__: each
     for each in (
@@ -478,6 +493,7 @@ SITUATIONS: dict[str, Situation] = {
         issues,
         statistics,
         live_run,
+        recorded_cameras,
         run_in_building,
         taken_leaf,
         steered_run,

@@ -247,6 +247,17 @@ class FakeRuns:
         found = self.run_now(run).id
         return NodeSteeringView(run=found, node=node, name=node, seq=0, offered=[], refused=[])
 
+    async def record(
+        self, run: UUID, seconds: float, by: str, author: ev.Author | None = None
+    ) -> ev.RecordingBegun:
+        self._expect(run, RunStatus.RUNNING, RunStatus.PAUSED)
+        begun = ev.RecordingBegun(
+            **_stamp(run), robots=["robot"], seconds=seconds, by=by, author=author
+        )
+        (numbered,) = await self.commit(begun)
+        assert isinstance(numbered, ev.RecordingBegun)
+        return numbered
+
     async def intervene(
         self, run: UUID, intervention: Intervention, author: ev.Author | None = None
     ) -> None:

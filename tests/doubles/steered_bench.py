@@ -1,11 +1,12 @@
 """A service with a bench of two boxes, whose runs tests steer."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Sequence
+from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from uuid import UUID
 
+from awaited_events import when
 from broken_constraints import broken_constraints
 from two_boxes import BENCH, BOTH
 from untruths import kinds_of
@@ -54,17 +55,6 @@ async def steer(service: Service, run: UUID, act: str, node: str, reason: str = 
 async def set_autonomy(service: Service, run: UUID, level: str) -> None:
     wish = SetAutonomy.model_validate({"act": "set_autonomy", "level": level})
     await service.runtime.steer(run, wish, "ann")
-
-
-async def when(service: Service, so: Callable[[ev.Event], bool]) -> ev.Event:
-    """The first event of which something is so, also of those that were."""
-    with service.journal.subscribe(0) as records:
-        async with asyncio.timeout(60.0):
-            async for record in records:
-                event: ev.Event = ev.any_event.validate_json(record.text)
-                if so(event):
-                    return event
-    raise AssertionError("the journal has ended")
 
 
 async def waits_before(service: Service, node: str) -> ev.LeafHeld:

@@ -4,7 +4,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from steered_bench import begin, bench, set_autonomy, started, steer, to_the_end, waits_before, when
+from awaited_events import when
+from steered_bench import begin, bench, set_autonomy, started, steer, to_the_end, waits_before
 from two_boxes import BLUE, RED
 
 from mend.errors import ConflictError

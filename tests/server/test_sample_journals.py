@@ -51,12 +51,14 @@ OF_STEERING = {
     "leaf_preferred",
     "leaf_tried_again",
 }
+OF_CAMERAS = {"recording_begun", "cameras_recorded"}
 OF_PROMISES = {"help_not_seen_yet", "help_reported", "promise_taken_back"}
+OF_PEOPLE = {*OF_PROMISES, *OF_STEERING}
 ADDED_SINCE: dict[str, set[str]] = {
     "v1": {
         *OF_NO_RUN,
-        *OF_PROMISES,
-        *OF_STEERING,
+        *OF_PEOPLE,
+        *OF_CAMERAS,
         "clip_recorded",
         "deadline_extended",
         "first_look",
@@ -70,19 +72,40 @@ ADDED_SINCE: dict[str, set[str]] = {
     },
     "v2": {
         *OF_NO_RUN,
-        *OF_PROMISES,
-        *OF_STEERING,
+        *OF_PEOPLE,
+        *OF_CAMERAS,
         "node_taken",
         "first_look",
         "looked_anew",
         "suspected_false_alarm",
         "way_found",
     },
-    "v3": {*OF_NO_RUN, *OF_PROMISES, *OF_STEERING, "node_taken", "looked_anew", "way_found"},
-    "v4": {*OF_NO_RUN, *OF_PROMISES, *OF_STEERING, "node_taken", "looked_anew", "way_found"},
-    "v5": {*OF_NO_RUN, *OF_PROMISES, *OF_STEERING, "node_taken", "looked_anew", "way_found"},
-    "v6": {*OF_NO_RUN, *OF_STEERING},
-    "v7": {*OF_NO_RUN, *OF_STEERING},
+    "v3": {
+        *OF_NO_RUN,
+        *OF_PEOPLE,
+        *OF_CAMERAS,
+        "node_taken",
+        "looked_anew",
+        "way_found",
+    },
+    "v4": {
+        *OF_NO_RUN,
+        *OF_PEOPLE,
+        *OF_CAMERAS,
+        "node_taken",
+        "looked_anew",
+        "way_found",
+    },
+    "v5": {
+        *OF_NO_RUN,
+        *OF_PEOPLE,
+        *OF_CAMERAS,
+        "node_taken",
+        "looked_anew",
+        "way_found",
+    },
+    "v6": {*OF_NO_RUN, *OF_STEERING, *OF_CAMERAS},
+    "v7": {*OF_NO_RUN, *OF_STEERING, *OF_CAMERAS},
 }
 """The types of events that came after a sample was written."""
 

@@ -1,11 +1,11 @@
 import { describe, expect, it } from "vitest";
-import { type KeptPicture, keptPictures, pictureNear } from "../src/run/camera_record";
+import { type KeptPicture, keptPictures, ownerOf, pictureNear } from "../src/run/camera_record";
 import type { Event } from "../src/wire/types";
 
 const kept: KeptPicture[] = [
-  { camera: "forearm", time: 10, picture: "a" },
-  { camera: "forearm", time: 10.4, picture: "b" },
-  { camera: "head", time: 10.1, picture: "c" },
+  { robot: "arm", camera: "forearm", time: 10, picture: "a" },
+  { robot: "arm", camera: "forearm", time: 10.4, picture: "b" },
+  { robot: "arm", camera: "head", time: 10.1, picture: "c" },
 ];
 
 describe("pictureNear", () => {
@@ -21,15 +21,35 @@ describe("pictureNear", () => {
 });
 
 describe("keptPictures", () => {
-  it("has the fault's own picture and the clip before it", () => {
+  it("has the fault's own picture, the clip before it, and what was recorded after it", () => {
     const events = [
-      { type: "issue_raised", time: 5, picture: "fault", detection: { camera: "head" } },
-      { type: "clip_recorded", time: 5, pictures: [{ time: 4.8, picture: "before" }] },
+      { type: "issue_raised", robot: "arm", time: 5, picture: "fault", detection: { camera: "head" } },
+      { type: "clip_recorded", robot: "arm", time: 5, pictures: [{ time: 4.8, picture: "before" }] },
+      {
+        type: "cameras_recorded",
+        robot: "arm",
+        time: 7,
+        pictures: [
+          { camera: "head", time: 6, picture: "after" },
+          { camera: "forearm", time: 6, picture: "also after" },
+        ],
+      },
       { type: "node_done", time: 6 },
     ] as unknown as Event[];
     expect(keptPictures(events)).toEqual([
-      { camera: "head", time: 5, picture: "fault" },
-      { camera: "forearm", time: 4.8, picture: "before" },
+      { robot: "arm", camera: "head", time: 5, picture: "fault" },
+      { robot: "arm", camera: "forearm", time: 4.8, picture: "before" },
+      { robot: "arm", camera: "head", time: 6, picture: "after" },
+      { robot: "arm", camera: "forearm", time: 6, picture: "also after" },
     ]);
+  });
+});
+
+describe("ownerOf", () => {
+  it("is told where robots' pictures could be taken for one another's", () => {
+    const [first] = kept as [KeptPicture];
+    expect(ownerOf(kept, first)).toBeNull();
+    const other = { robot: "other", camera: "head", time: 10, picture: "d" };
+    expect(ownerOf([...kept, other], first)).toBe("arm");
   });
 });

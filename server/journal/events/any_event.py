@@ -54,8 +54,10 @@ from mend.server.journal.events.robot_events import (
     WayFound,
 )
 from mend.server.journal.events.run_events import (
+    CamerasRecorded,
     InterventionAccepted,
     InterventionDone,
+    RecordingBegun,
     RunAborted,
     RunFailed,
     RunFinished,
@@ -99,6 +101,8 @@ AnyEvent = Annotated[
     | StepStarted
     | IssueRaised
     | ClipRecorded
+    | RecordingBegun
+    | CamerasRecorded
     | DialogueOpened
     | Prompt
     | FirstLook

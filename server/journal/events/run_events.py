@@ -97,6 +97,34 @@ class UnseenPart(EventModel):
     place: str
 
 
+class RecordingBegun(Event):
+    """Somebody wants what the cameras of these robots see, for some seconds from now on."""
+
+    type: Literal["recording_begun"] = "recording_begun"
+    robots: list[str]
+    seconds: float
+    by: str
+    author: Author | None = None
+
+
+class RecordedPicture(EventModel):
+    """A picture of a camera, at `/api/pictures/{picture}`; `time` on the run's clock."""
+
+    camera: str
+    time: float
+    picture: UUID
+
+
+class CamerasRecorded(Event):
+    """What a robot's cameras saw around a fault, or because somebody wanted it, oldest first."""
+
+    type: Literal["cameras_recorded"] = "cameras_recorded"
+    robot: str
+    pictures: list[RecordedPicture]
+    size_bytes: int = 0
+    """Of all these pictures."""
+
+
 class RunFinished(Event):
     """The task is done. `missing`: what was left out, as a helper said; `unseen`: what is hidden.
 

@@ -1,7 +1,8 @@
-// The pictures that a run's journal keeps: those of faults, and the seconds before them.
+// The pictures that a run's journal keeps: of faults and the seconds around them, and what people had recorded.
 import type { Event } from "../wire/types";
 
 export interface KeptPicture {
+  readonly robot: string;
   readonly camera: string;
   /** Seconds of the run's clock. */
   readonly time: number;
@@ -14,11 +15,18 @@ const NEAR_S = 1;
 
 export function keptPictures(events: readonly Event[]): KeptPicture[] {
   return events.flatMap((event): KeptPicture[] => {
-    if (event.type === "issue_raised" && event.picture !== null) {
-      return [{ camera: event.detection?.camera ?? CLIP_CAMERA, time: event.time, picture: event.picture }];
+    switch (event.type) {
+      case "issue_raised": {
+        const { robot, time, picture, detection } = event;
+        return picture === null ? [] : [{ robot, camera: detection?.camera ?? CLIP_CAMERA, time, picture }];
+      }
+      case "clip_recorded":
+        return event.pictures.map((each) => ({ robot: event.robot, camera: CLIP_CAMERA, ...each }));
+      case "cameras_recorded":
+        return event.pictures.map((each) => ({ robot: event.robot, ...each }));
+      default:
+        return [];
     }
-    if (event.type !== "clip_recorded") return [];
-    return event.pictures.map((each) => ({ camera: CLIP_CAMERA, ...each }));
   });
 }
 
@@ -30,4 +38,9 @@ export function pictureNear(kept: readonly KeptPicture[], camera: string, time: 
     if (nearest === null || Math.abs(each.time - time) < Math.abs(nearest.time - time)) nearest = each;
   }
   return nearest;
+}
+
+/** Whose picture it is, where robots' pictures could be taken for one another's. */
+export function ownerOf(kept: readonly KeptPicture[], picture: KeptPicture): string | null {
+  return kept.some((each) => each.robot !== picture.robot) ? picture.robot : null;
 }

@@ -3,7 +3,8 @@ import { useEffect, useState } from "preact/hooks";
 import { onEvent } from "../state/service";
 import * as rest from "../wire/rest";
 import type { RunStatus } from "../wire/types";
-import { type KeptPicture, keptPictures, pictureNear } from "./camera_record";
+import { type KeptPicture, keptPictures, ownerOf, pictureNear } from "./camera_record";
+import { RecordButton } from "./record_button";
 import { useLivePicture } from "./live_picture";
 import type { Moment } from "./moment";
 import "./cameras.css";
@@ -25,6 +26,7 @@ export function Cameras({ run, moment, status }: Props) {
   return (
     <section class="panel cameras" aria-labelledby="cameras-title">
       <h2 id="cameras-title">Cameras</h2>
+      {goesOn && <RecordButton run={run} />}
       <div class="cameras-both">
         {CAMERAS.map(([camera, title]) => (
           <figure key={camera} class="camera">
@@ -69,12 +71,15 @@ function PastPicture(props: { kept: readonly KeptPicture[]; camera: string; titl
   const { kept, camera, title, moment } = props;
   const nearest = pictureNear(kept, camera, moment.time.value);
   if (nearest === null) {
-    return <p class="camera-none">No picture is kept of this moment. Those of a fault and the seconds before it are.</p>;
+    return <p class="camera-none">No picture is kept of this moment. Those around faults are, and what somebody had recorded.</p>;
   }
+  const owner = ownerOf(kept, nearest);
   return (
     <>
       <img src={rest.picturePath(nearest.picture)} alt={`${title} at ${nearest.time.toFixed(1)} s`} />
-      <p class="camera-when small">{nearest.time.toFixed(1)} s</p>
+      <p class="camera-when small">
+        {nearest.time.toFixed(1)} s{owner !== null && ` · ${owner}`}
+      </p>
     </>
   );
 }

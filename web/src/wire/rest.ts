@@ -20,6 +20,8 @@ import type {
   Problem as ProblemDocument,
   PushView,
   QuestionBatchView,
+  RecordingBegun,
+  RecordingRequest,
   RequestView,
   RobotView,
   RunRequest,
@@ -149,6 +151,8 @@ export const sayOfLeaf = (id: string, words: string, helper: string) => leaf<Lea
 /** What may be said of a node of a run now. */
 export const steeringOffers = (id: string, node: string) =>
   call<NodeSteeringView>("GET", `/api/runs/${segment(id)}/steering/offers?node=${segment(node)}`);
+export const recordCameras = (id: string, wish: RecordingRequest) =>
+  call<RecordingBegun>("POST", `/api/runs/${segment(id)}/recordings`, wish);
 export const steer = (id: string, wish: SteerNodeRequest | SetAutonomyRequest) =>
   call<SteeringView>("POST", `/api/runs/${segment(id)}/steering`, wish);
 
