@@ -12,16 +12,16 @@ from mend.server.models.checked_archive import BROKEN, VERSION_CHARS
 
 @dataclass(frozen=True, slots=True)
 class OwnModel:
-    """A model under the name by which robots say it; `sizes` has the bytes of each of its files."""
+    """A model under the name by which robots say it; `sizes` has the bytes of each of its files.
+
+    `stored_bytes` are those of its archive.
+    """
 
     name: str
     version: str
     sizes: Mapping[str, int]
     archive: Path
-
-    @property
-    def stored_bytes(self) -> int:
-        return self.archive.stat().st_size
+    stored_bytes: int
 
     def read(self, file: str) -> bytes:
         """A file of it, also under its version. Raises `NotFoundError` and `UnreadableError`."""
@@ -52,8 +52,9 @@ def read_label(archive: Path) -> OwnModel:
         with zipfile.ZipFile(archive) as opened:
             name, version = json.loads(opened.comment)
             sizes = {each.filename: each.file_size for each in opened.infolist()}
+        stored_bytes = archive.stat().st_size
     except (OSError, TypeError, *BROKEN) as error:
         raise UnreadableError(f"{archive} is no robot model: {error}") from error
     if not isinstance(name, str) or not isinstance(version, str) or len(version) != VERSION_CHARS:
         raise UnreadableError(f"{archive} is no robot model: it does not say of which name")
-    return OwnModel(name, version, sizes, archive)
+    return OwnModel(name, version, sizes, archive, stored_bytes)

@@ -81,7 +81,7 @@ class OwnModels:
                 )
                 model = await asyncio.to_thread(_put_in_place, staged)
             except OSError as error:
-                raise _no_disk(name, error) from error
+                raise _no_disk(name, "kept", error) from error
             finally:
                 staged.unlink(missing_ok=True)
             self._models[name] = model
@@ -89,7 +89,9 @@ class OwnModels:
         return model, before is None
 
     async def delete(self, name: str, author: Author) -> None:
-        """Raises `NotFoundError`, `ConflictError` (it comes with a world), `JournalWriteError`."""
+        """Raises `NotFoundError`, `ConflictError` (it comes with a world), `JournalWriteError`, and
+        `UnavailableError` where its file cannot be deleted: it is still there then.
+        """
         self._refuse_taken(name)
         async with self._changing:
             model = self._models.get(name)
@@ -97,8 +99,11 @@ class OwnModels:
                 raise NotFoundError(f"there is no robot model '{name}'")
             event = ModelDeleted(wall_time=self._utc_now(), name=name, author=author)
             await self._journal.append(Entry(events=[event]))
+            try:
+                await asyncio.to_thread(model.archive.unlink, missing_ok=True)
+            except OSError as error:
+                raise _no_disk(name, "deleted", error) from error
             del self._models[name]
-            await asyncio.to_thread(model.archive.unlink, missing_ok=True)
         self.changed()
 
     def _folder_for(self, name: str) -> Path:
@@ -169,7 +174,7 @@ def _stage(folder: Path, name: str, archive: bytes) -> Path:
     except OSError as error:
         with suppress(OSError):
             staged.unlink(missing_ok=True)
-        raise _no_disk(name, error) from error
+        raise _no_disk(name, "kept", error) from error
     return staged
 
 
@@ -179,5 +184,6 @@ def _put_in_place(staged: Path) -> OwnModel:
     return read_label(archive)
 
 
-def _no_disk(name: str, error: OSError) -> UnavailableError:
-    return UnavailableError(f"the robot model '{name}' cannot be kept: {error.strerror or error}")
+def _no_disk(name: str, what: str, error: OSError) -> UnavailableError:
+    why = error.strerror or error
+    return UnavailableError(f"the robot model '{name}' cannot be {what}: {why}")

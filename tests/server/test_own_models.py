@@ -11,7 +11,7 @@ from people import serving_people
 from service_under_test import ServiceUnderTest, build
 from small_model import BARE, DESCRIPTION, OBJ, STL, packed
 
-from mend.errors import ConflictError
+from mend.errors import ConflictError, UnavailableError
 from mend.server.access.deeds import deed_of
 from mend.server.access.roles import Role
 from mend.server.journal import events as ev
@@ -200,3 +200,40 @@ async def test_a_journal_in_memory_keeps_no_models() -> None:
     assert refused.status_code == 409
     assert "journal in memory" in refused.json()["detail"]
     service.journal.close()
+
+
+async def test_what_the_disk_does_not_take_or_give_up_is_told_in_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    journal = SqliteJournal(":memory:")
+    (tmp_path / "file").write_text("no folder")
+    with pytest.raises(UnavailableError, match="the robot model 'lamp' cannot be kept: "):
+        await own_models(tmp_path / "file", journal).keep("lamp", packed(), ANNA, packed=True)
+    models = own_models(tmp_path / "models", journal)
+    model, _ = await models.keep("lamp", packed(), ANNA, packed=True)
+
+    def fail(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "unlink", fail)
+    with pytest.raises(UnavailableError, match="cannot be deleted: Permission denied"):
+        await models.delete("lamp", ANNA)
+    assert models.all() == [model]
+    journal.close()
+
+
+async def test_a_model_whose_file_is_gone_is_told_in_a_sentence(
+    client: httpx.AsyncClient, service: ServiceUnderTest
+) -> None:
+    kept = (await client.put("/api/models/lamp", content=packed(), headers=ZIP)).json()
+    folder = service.settings.models_path
+    assert folder is not None
+    (archive,) = folder.iterdir()
+    archive.write_bytes(b"torn")
+    torn = await client.get(kept["urdf"])
+    assert torn.status_code == 500
+    assert "upload it again" in torn.json()["detail"]
+    archive.unlink()
+    assert (await client.get(kept["urdf"])).status_code == 404
+    again = await client.put("/api/models/lamp", content=packed(), headers=ZIP)
+    assert (again.status_code, again.json()) == (200, kept)
