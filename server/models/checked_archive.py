@@ -4,7 +4,8 @@ import hashlib
 import io
 import zipfile
 import zlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from mend.errors import WrongInputError
@@ -14,6 +15,11 @@ from mend.server.models.urdf_elements import read_urdf
 from mend.server.models.urdf_shape import check_shape
 
 MOST_FILES = 500
+MOST_ENTRIES = 2 * MOST_FILES
+ENTRY = b"PK\x01\x02"
+"""How the entry of a file or a folder begins in the list of an archive."""
+PACKINGS = frozenset({zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED})
+"""Those of which no more is unpacked than is asked for."""
 MOST_URDF_BYTES = 4 * 1024**2
 VERSION_CHARS = 12
 NO_DATE = (1980, 1, 1, 0, 0, 0)
@@ -30,14 +36,33 @@ class CheckedArchive:
     version: str
 
 
+def unpacked_bytes(sent: bytes) -> int:
+    """How much the files of an archive are, as it says itself; 0 for what is none."""
+    try:
+        with _opened(sent) as archive:
+            return sum(each.file_size for each in archive.infolist())
+    except WrongInputError:
+        return 0
+
+
 def check_archive(sent: bytes, most_bytes: int) -> CheckedArchive:
     """Check an archive (ZIP) with a `robot.urdf` and the files that it names.
 
     What it does not name is left out. Raises `WrongInputError`.
     """
+    with _opened(sent) as archive:
+        return _pack(_drawn_from(_Files(archive, most_bytes)))
+
+
+@contextmanager
+def _opened(sent: bytes) -> Iterator[zipfile.ZipFile]:
+    """Its files by name and size. Raises `WrongInputError`, also for what is read meanwhile."""
+    # Before a list of them is made, which takes many times the room of what it is made from.
+    if sent.count(ENTRY) > MOST_ENTRIES:
+        raise WrongInputError(f"the archive has more than {MOST_ENTRIES} files and folders")
     try:
         with zipfile.ZipFile(io.BytesIO(sent)) as archive:
-            return _pack(_drawn_from(_Files(archive, most_bytes)))
+            yield archive
     except WrongInputError:
         raise
     except BROKEN as error:
@@ -79,7 +104,10 @@ class _Files:
         found = self._files.get(name)
         if found is None:
             raise WrongInputError(f"{by} needs {name}, which is not in the archive")
-        # No more than that is unpacked, whatever the archive has under the name.
+        if found.compress_type not in PACKINGS:
+            raise WrongInputError(
+                f"{name} is packed in another way: deflate it, or store it"
+            )
         self._bytes += found.file_size
         if self._bytes > self._most_bytes:
             raise WrongInputError(
@@ -88,7 +116,9 @@ class _Files:
             )
         if name == URDF:
             _refuse_long(found.file_size)
-        return self._archive.read(found)
+        # No more than it says is unpacked, which `ZipFile.read` does first and then cuts off.
+        with self._archive.open(found) as file:
+            return file.read(found.file_size)
 
 
 def _refuse_long(size: int) -> None:

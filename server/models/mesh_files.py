@@ -1,13 +1,15 @@
 """Meshes and pictures of a model: whether each is what its name says, and what it names itself."""
 
+import re
 from collections.abc import Mapping
 
 from mend.errors import WrongInputError
-from mend.server.models.archive_names import PICTURES, kind_of, named_file
+from mend.server.models.archive_names import LONGEST, PICTURES, kind_of, named_file
 from mend.server.models.xml_events import read_elements
 
 STL_HEAD_BYTES = 84
 STL_FACET_BYTES = 50
+OBJ_CORNER = re.compile(rb"(?:^|[\r\n])v ")
 MAGIC = {".png": b"\x89PNG\r\n\x1a\n", ".jpg": b"\xff\xd8\xff", ".jpeg": b"\xff\xd8\xff"}
 
 
@@ -35,22 +37,21 @@ def _is_stl_text(content: bytes) -> bool:
 
 def _is_obj(content: bytes) -> bool:
     """Text with a corner; the materials that it may name are nobody's."""
-    if b"\0" in content:
-        return False
-    return any(line.startswith(b"v ") for line in content.splitlines())
+    return b"\0" not in content and OBJ_CORNER.search(content) is not None
 
 
 def _pictures_of_collada(name: str, content: bytes) -> list[str]:
     reader = _Collada(name)
     read_elements(content, name, reader)
-    return reader.pictures
+    return list(reader.pictures)
 
 
 class _Collada:
     """Which pictures a COLLADA file names, be it as in version 1.4 or in 1.5."""
 
     def __init__(self, file: str) -> None:
-        self.pictures: list[str] = []
+        self.pictures: dict[str, None] = {}
+        """In the order in which they are named, each once."""
         self._file = file
         self._within: list[str] = []
         self._said = ""
@@ -63,12 +64,13 @@ class _Collada:
         self._said = ""
 
     def text(self, text: str) -> None:
-        if self._names_picture():
-            self._said += text
+        # Of what is too long for any name a little more is enough to say so.
+        if len(self._said) <= LONGEST and self._names_picture():
+            self._said += text.lstrip() if not self._said else text
 
     def end(self, name: str) -> None:  # noqa: ARG002
         if self._names_picture() and self._said.strip():
-            self.pictures.append(named_file(self._said.strip(), self._file, PICTURES))
+            self.pictures[named_file(self._said.strip(), self._file, PICTURES)] = None
         self._said = ""
         self._within.pop()
 

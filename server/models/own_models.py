@@ -14,15 +14,18 @@ from mend.server.journal.events import Author, ModelDeleted, ModelKept
 from mend.server.journal.file_mode import OWNERS_FILE, OWNERS_FOLDER
 from mend.server.journal.journal import Entry, Journal
 from mend.server.limits import Limits
-from mend.server.models.checked_archive import CheckedArchive, check_archive, check_description
+from mend.server.models.checked_archive import (
+    CheckedArchive,
+    check_archive,
+    check_description,
+    unpacked_bytes,
+)
 from mend.server.models.own_model import OwnModel, read_label, with_label
 from mend.server.off_loop import OffLoop
 
 log = logging.getLogger(__name__)
 
 SUFFIX = ".model.zip"
-UNPACKED = 8
-"""About so many times as long as an archive is what it holds."""
 
 
 class OwnModels:
@@ -123,8 +126,10 @@ class OwnModels:
 
     async def _check(self, sent: bytes, packed: bool) -> CheckedArchive:
         if packed:
-            size = len(sent) * UNPACKED
-            return await self._off_loop.run(size, check_archive, sent, self._limits.model_bytes)
+            most_bytes = self._limits.model_bytes
+            # What is unpacked counts, of which a few bytes may be many.
+            size = max(len(sent), min(unpacked_bytes(sent), most_bytes))
+            return await self._off_loop.run(size, check_archive, sent, most_bytes)
         return await self._off_loop.run(len(sent), check_description, sent)
 
     def _refuse_too_much(self, name: str, size: int) -> None:

@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import tracemalloc
 import zipfile
 
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 from small_model import BARE, DAE, DESCRIPTION, OBJ, PNG, STL, packed
 
 from mend.errors import WrongInputError
-from mend.server.models.checked_archive import check_archive, check_description
+from mend.server.models.checked_archive import check_archive, check_description, unpacked_bytes
 
 ROOM = 10**6
 
@@ -155,9 +156,51 @@ def test_no_more_is_unpacked_than_there_is_room_for() -> None:
     assert refused.value.limit == "model_bytes"
 
 
+def with_size(archive: bytes, size: int) -> bytes:
+    """The archive with another size told of the file that its list has last."""
+    at = archive.rindex(b"PK\x01\x02") + 24
+    return archive[:at] + size.to_bytes(4, "little") + archive[at + 4 :]
+
+
+def test_no_more_is_unpacked_than_a_file_is_said_to_have() -> None:
+    bomb = io.BytesIO()
+    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("robot.urdf", BARE + " " * 10**8)
+    tracemalloc.start()
+    with pytest.raises(WrongInputError, match="cannot be read"):
+        check_archive(with_size(bomb.getvalue(), 1000), ROOM)
+    assert tracemalloc.get_traced_memory()[1] < 10**7
+    tracemalloc.stop()
+
+
+@pytest.mark.parametrize("packing", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_packings_that_unpack_without_bounds_are_refused(packing: int) -> None:
+    sent = io.BytesIO()
+    with zipfile.ZipFile(sent, "w", packing) as archive:
+        archive.writestr("robot.urdf", BARE)
+    with pytest.raises(WrongInputError, match="deflate it, or store it"):
+        check_archive(sent.getvalue(), ROOM)
+
+
 def test_many_files_are_refused() -> None:
     with pytest.raises(WrongInputError, match="more than 500 files"):
         check_archive(packed({f"{number}.txt": b"" for number in range(501)}), ROOM)
+    with pytest.raises(WrongInputError, match="more than 1000 files and folders"):
+        check_archive(packed({f"{number}/": b"" for number in range(1001)}), ROOM)
+
+
+def test_an_archive_says_how_much_is_in_it() -> None:
+    assert unpacked_bytes(packed({"spare.stl": bytes(10**6)})) > 10**6
+    assert unpacked_bytes(b"no archive") == 0
+
+
+def test_a_mesh_may_name_a_picture_often_and_at_no_length() -> None:
+    named = b"<image><init_from>../red.png</init_from></image>" * 1000
+    shade = b"<COLLADA>" + named + b"</COLLADA>"
+    assert check_archive(packed({"meshes/shade.dae": shade, "red.png": PNG}), ROOM).version
+    long = b"<COLLADA><image><init_from>" + b"a" * 900_000 + b".png</init_from></image></COLLADA>"
+    with pytest.raises(WrongInputError, match=r"shade\.dae names 'aaa"):
+        check_archive(packed({"meshes/shade.dae": long}), ROOM)
 
 
 @given(st.binary(max_size=200), st.integers(0, 2000), st.binary(min_size=1, max_size=8))
