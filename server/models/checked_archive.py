@@ -105,9 +105,7 @@ class _Files:
         if found is None:
             raise WrongInputError(f"{by} needs {name}, which is not in the archive")
         if found.compress_type not in PACKINGS:
-            raise WrongInputError(
-                f"{name} is packed in another way: deflate it, or store it"
-            )
+            raise WrongInputError(f"{name} is packed in another way: deflate it, or store it")
         self._bytes += found.file_size
         if self._bytes > self._most_bytes:
             raise WrongInputError(

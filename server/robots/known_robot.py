@@ -44,6 +44,9 @@ from mend.server.robots.times import LinkTimes
 log = logging.getLogger(__name__)
 
 MOST_UNTAKEN_COMMANDS = 1000
+OWED_S = 30.0
+"""After so long a picture that has not come is not waited for any more."""
+MOST_OWED = 100
 
 MOST_UNASKED_REPORTS = 10_000
 """What a robot has to report until its task comes on is far less: more fills the journal only."""
@@ -79,6 +82,8 @@ class KnownRobot:
         self._sink_sees_it = False
         self._untaken: OrderedDict[str, Command] = OrderedDict()
         self._pictures: dict[str, asyncio.Future[CameraPicture]] = {}
+        self._owed: OrderedDict[str, float] = OrderedDict()
+        """Pictures that did not come in time, and when that was: they may come yet."""
         self._received: dict[str, int] = {}
         self._heard_of: set[str] = set()
         self._refused: tuple[str, str] | None = None
@@ -193,6 +198,7 @@ class KnownRobot:
         if self.session is not session:
             return
         self.session = None
+        self._owed.clear()
         for future in self._pictures.values():
             if not future.done():
                 future.set_exception(ConflictError(f"the robot '{self.name}' is not connected"))
@@ -307,6 +313,13 @@ class KnownRobot:
         if self.session is not None and shows:
             self.session.send(ShowPoses(rate_hz=max(self._poses_hz, self._always_hz)))
 
+    @property
+    def has_time(self) -> bool:
+        """Whether it has taken all that it was told, and no picture of it is late."""
+        oldest_s = asyncio.get_running_loop().time() - OWED_S
+        owes = any(since > oldest_s for since in self._owed.values())
+        return self.session is not None and not self._untaken and not owes
+
     async def take_picture(self, camera: str, timeout_s: float) -> CameraPicture:
         """A camera's picture now. Raises `NotFoundError` or `ConflictError`."""
         if self.hello is None or self.session is None:
@@ -321,6 +334,9 @@ class KnownRobot:
             async with asyncio.timeout(timeout_s):
                 return await future
         except TimeoutError:
+            self._owed[command_id] = asyncio.get_running_loop().time()
+            while len(self._owed) > MOST_OWED:
+                self._owed.popitem(last=False)
             raise ConflictError(
                 f"the robot '{self.name}' sent no picture of '{camera}' within {timeout_s:g} s"
             ) from None
@@ -350,6 +366,7 @@ class KnownRobot:
     def _answer(
         self, command: str, answer: Callable[[asyncio.Future[CameraPicture]], None]
     ) -> None:
+        self._owed.pop(command, None)
         future = self._pictures.get(command)
         if future is not None and not future.done():
             answer(future)

@@ -110,6 +110,10 @@ class RobotRegistry:
             raise ConflictError(f"the robot '{robot}' is not connected")
         return await self._robots[robot].take_picture(camera, timeout_s)
 
+    def has_time(self, robot: str) -> bool:
+        """Whether a robot is there, has taken all that it was told, and no picture is late."""
+        return robot in self._robots and self._robots[robot].has_time
+
     def hello(self, robot: str) -> Hello | None:
         """The robot's last hello; None if it never said one."""
         return self._robots[robot].hello if robot in self._robots else None

@@ -13,10 +13,18 @@ from mend.server.camera_picture import CameraPicture
 from mend.server.journal import events as ev
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.inbox import Task
-from mend.server.runtime.robot_proxy import RobotProxy
+from mend.server.runtime.robot_proxy import RobotActivity, RobotProxy
 
 KEPT_AT_ONCE_S = 2.0
 """So much is journaled at a time: what is lost with the service, or at the end of the run."""
+
+RESTS = 3.0
+"""So many times as long as its pictures took a robot is left alone: whatever takes them may be what
+drives it.
+"""
+
+FIRST_REST_S, LONGEST_REST_S = 1.0, 30.0
+"""How long a camera is not asked that gave no picture; longer each time."""
 
 MOST_BUFFERED_BYTES = 32 * 1024**2
 """What one robot's cameras saw and no fault has come of, whatever the settings say."""
@@ -32,9 +40,13 @@ class TakePicture(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class CameraSource:
-    """Where pictures come from; `sleep` and `monotonic` are of real time, as films are."""
+    """Where pictures come from; `sleep` and `monotonic` are of real time, as films are.
+
+    `has_time` tells whether a robot has taken all that it was told, and no picture is late.
+    """
 
     take_picture: TakePicture
+    has_time: Callable[[str], bool]
     monotonic: Callable[[], float]
     sleep: Callable[[float], Awaitable[None]]
 
@@ -46,12 +58,23 @@ class _Taken:
     jpeg: bytes
 
 
+@dataclass(frozen=True, slots=True)
+class _Unanswered:
+    """A camera that gave no picture is not asked until then."""
+
+    rest_s: float
+    until: float
+
+
 class CameraRecorder:
     """The cameras of one run.
 
     Each robot has one film at a time, and whoever wants more of it only makes it longer. What was
     seen before a fault is in memory alone, until the fault comes. A run whose clock runs as fast as
     it can is not filmed around faults: its pictures would be of other moments than they say.
+
+    A robot's work comes first: it is asked for one picture at a time, once it has taken all
+    commands and while no picture is late, and is left alone for longer than that took.
     """
 
     def __init__(
@@ -67,6 +90,9 @@ class CameraRecorder:
         self._source = source
         self._tell = tell
         self._films: dict[str, _Film] = {}
+        self._unanswered: dict[tuple[str, str], _Unanswered] = {}
+        self._waiting_bytes = 0
+        self._full = False
 
     def begin(self) -> None:
         """Film from now on, where the moments before a fault are wanted."""
@@ -80,7 +106,12 @@ class CameraRecorder:
         wanted = settings.record_before_fault_s > 0 or settings.record_after_fault_s > 0
         if not (wanted and self._around_faults) or not self._has_room(0):
             return
-        self._film_of(robot).keep_for(settings.record_after_fault_s, buffered=True)
+        # After what the run tells the robot because of the fault.
+        self._tell(partial(self._film_fault, robot))
+
+    async def _film_fault(self, robot: str) -> None:
+        after_s = self._context.settings.record_after_fault_s
+        self._film_of(robot).keep_for(after_s, buffered=True)
 
     async def record(
         self, seconds: float, by: str, author: ev.Author | None = None
@@ -117,13 +148,18 @@ class CameraRecorder:
         return self._context.state.started.speed != "max"
 
     def _cameras(self, robot: str) -> Sequence[str]:
-        hello = self._proxies[robot].hello
-        return () if hello is None else hello.cameras
+        proxy = self._proxies[robot]
+        there = proxy.hello is not None and proxy.doing is not RobotActivity.ABSENT
+        return proxy.hello.cameras if there and proxy.hello is not None else ()
 
     def _has_room(self, more_bytes: int) -> bool:
         """Whether so much more may be kept of this run."""
         most = self._context.settings.limits.recorded_bytes
         return self._context.state.recorded_bytes + more_bytes < most
+
+    def _is_of_use(self) -> bool:
+        """Whether there is room for another picture, with all that wait to be journaled."""
+        return not self._full and self._has_room(self._waiting_bytes)
 
     def _film_of(self, robot: str) -> "_Film":
         if robot not in self._films:
@@ -140,15 +176,37 @@ class CameraRecorder:
         """One picture of each camera; a robot that has none to give just now gives none."""
         taken = []
         for camera in self._cameras(robot):
-            try:
-                picture = await self._source.take_picture(robot, camera)
-            except RefusalError:
-                continue
-            taken.append(_Taken(camera, self._context.clock.now(), picture.jpeg))
+            if self._source.has_time(robot) and self._is_of_use():
+                picture = await self._picture(robot, camera)
+                if picture is not None:
+                    taken.append(_Taken(camera, self._context.clock.now(), picture.jpeg))
         return taken
 
+    async def _picture(self, robot: str, camera: str) -> CameraPicture | None:
+        """What a camera sees; None also where it has not answered of late."""
+        before = self._unanswered.get((robot, camera))
+        if before is not None and self._source.monotonic() < before.until:
+            return None
+        try:
+            picture = await self._source.take_picture(robot, camera)
+        except RefusalError:
+            rest_s = FIRST_REST_S if before is None else min(2 * before.rest_s, LONGEST_REST_S)
+            until = self._source.monotonic() + rest_s
+            self._unanswered[robot, camera] = _Unanswered(rest_s, until)
+            return None
+        self._unanswered.pop((robot, camera), None)
+        return picture
+
     def _hand_over(self, robot: str, pictures: Sequence[_Taken]) -> None:
-        self._tell(partial(self._keep, robot, pictures))
+        size = sum(len(each.jpeg) for each in pictures)
+        self._waiting_bytes += size
+        self._tell(partial(self._keep_waiting, robot, pictures, size))
+
+    async def _keep_waiting(self, robot: str, taken: Sequence[_Taken], size: int) -> None:
+        try:
+            await self._keep(robot, taken)
+        finally:
+            self._waiting_bytes -= size
 
     async def _keep(self, robot: str, taken: Sequence[_Taken]) -> None:
         """Journal pictures, as many as there is room for."""
@@ -156,6 +214,7 @@ class CameraRecorder:
         for each in taken:
             if not self._has_room(size + len(each.jpeg)):
                 self._context.refusals.note("recorded_bytes")
+                self._full = True
                 break
             size += len(each.jpeg)
             kept[uuid4()] = each
@@ -222,9 +281,11 @@ class _Film:
         while self._before_s > 0 or self._kept or self._source.monotonic() < self._keep_until:
             began = self._source.monotonic()
             taken = await self._shoot() if self._wanted(began) else []
+            ended = self._source.monotonic()
+            rest_s = max(self._period_s - (ended - began), RESTS * (ended - began))
             self._take(began, taken)
-            took = self._source.monotonic() - began
-            await self._source.sleep(max(0.0, self._period_s - took))
+            self._hand_over_before(ended + rest_s)
+            await self._source.sleep(rest_s)
 
     def _wanted(self, now: float) -> bool:
         return self._before_s > 0 or now < self._keep_until
@@ -234,9 +295,13 @@ class _Film:
             self._kept += taken
         elif self._before_s > 0:
             self._remember(now, taken)
-        if self._kept and (now >= self._keep_until or now - self._handed_over >= KEPT_AT_ONCE_S):
+
+    def _hand_over_before(self, then: float) -> None:
+        """Hand over what would be too old by the next picture, or is not followed by any."""
+        last = then >= self._keep_until
+        if self._kept and (last or then - self._handed_over > KEPT_AT_ONCE_S):
             self._hand_over(self._kept)
-            self._kept, self._handed_over = [], now
+            self._kept, self._handed_over = [], self._source.monotonic()
 
     def _remember(self, now: float, taken: list[_Taken]) -> None:
         self._before.append((now, taken))

@@ -259,7 +259,9 @@ class Runtime:
             partial(self._send_mail, state),
             lambda: self._attendance.idle(self._states.open_dialogues()),
         )
-        cameras = CameraSource(self._robots.take_picture, self._monotonic, asyncio.sleep)
+        cameras = CameraSource(
+            self._robots.take_picture, self._robots.has_time, self._monotonic, asyncio.sleep
+        )
         run = Run(context, proxies, dialogues, hardware, self._poses.open(state), cameras)
         try:
             self._owners.give(run)

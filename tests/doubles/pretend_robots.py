@@ -166,6 +166,9 @@ class PretendRobots:
     async def take_picture(self, robot: str, camera: str, timeout_s: float = 2.0) -> CameraPicture:  # noqa: ARG002
         return CameraPicture(b"\xff\xd8picture")
 
+    def has_time(self, robot: str) -> bool:
+        return robot in self.robots
+
     def hello(self, robot: str) -> Hello | None:
         return self.robots[robot].hello() if robot in self.robots else None
 

@@ -10,6 +10,7 @@ import pytest
 from dropping_channel import DroppingChannel
 from full_disk import FailingConnection
 from recording_sink import RecordingSink
+from service_under_test import until
 from ticking_clock import TickingClock
 
 from mend.errors import ConflictError, NotFoundError
@@ -22,6 +23,7 @@ from mend.robots.link.messages import (
     Heartbeat,
     Held,
     Hello,
+    Interrupt,
     LinkError,
     Look,
     Picture,
@@ -556,6 +558,30 @@ async def test_a_picture_that_does_not_come_is_a_conflict(registry: RobotRegistr
     await robot.leave()
     with pytest.raises(ConflictError, match="not connected"):
         await gone
+
+
+async def test_a_robot_has_time_once_it_has_taken_all_and_no_picture_is_late(
+    registry: RobotRegistry,
+) -> None:
+    assert not registry.has_time("arm")
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    assert registry.has_time("arm")
+    with pytest.raises(ConflictError, match="sent no picture"):
+        await registry.take_picture("arm", "head", timeout_s=0.001)
+    assert not registry.has_time("arm")
+    command = await robot.hear()
+    assert isinstance(command, Command)
+    jpeg = base64.b64encode(A_PICTURE).decode()
+    await robot.say(Picture(command=command.id, camera="head", jpeg=jpeg))
+    await until(lambda: registry.has_time("arm"))
+    registry.send("arm", "c1", Interrupt(execution="e1", retreat=True))
+    assert not registry.has_time("arm")
+    await robot.hear()
+    await robot.say(Taken(command="c1"))
+    await until(lambda: registry.has_time("arm"))
+    await robot.leave()
+    await until(lambda: not registry.has_time("arm"))
 
 
 class StuckSink(RecordingSink):

@@ -19,6 +19,7 @@ from mend.server.refusals import Refusals
 from mend.server.runtime.camera_recorder import CameraRecorder, CameraSource
 from mend.server.runtime.context import RunContext, RunSettings
 from mend.server.runtime.inbox import Task
+from mend.server.runtime.robot_proxy import RobotActivity
 from mend.server.runtime.views import RunStatus
 
 JPEG_BYTES = 100
@@ -34,8 +35,14 @@ class Filmed:
     cameras: dict[str, list[str]] = field(default_factory=lambda: {"arm": CAMERAS})
     time_s: float = 0.0
     gone: set[str] = field(default_factory=set)
+    busy: set[str] = field(default_factory=set)
+    takes_s: float = 0.0
+    asked: list[float] = field(default_factory=list)
+    turn: asyncio.Lock = field(default_factory=asyncio.Lock)
+    may_commit: asyncio.Event = field(default_factory=asyncio.Event)
     events: list[ev.Event] = field(default_factory=list)
     pictures: dict[UUID, bytes] = field(default_factory=dict)
+    doing: list[asyncio.Task[None]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         started = SimpleNamespace(speed=self.speed)
@@ -43,15 +50,21 @@ class Filmed:
         self.clock = SimpleNamespace(now=lambda: self.time_s)
         self.refusals = Refusals()
         proxies = {
-            name: SimpleNamespace(hello=SimpleNamespace(cameras=each))
+            name: SimpleNamespace(hello=SimpleNamespace(cameras=each), doing=RobotActivity.IDLE)
             for name, each in self.cameras.items()
         }
-        source = CameraSource(self.take_picture, lambda: self.time_s, self.sleep)
+        self.proxies = proxies
+        self.may_commit.set()
+        source = CameraSource(
+            self.take_picture, lambda robot: robot not in self.busy, lambda: self.time_s, self.sleep
+        )
         self.recorder = CameraRecorder(
             cast(RunContext, self), cast(Any, proxies), source, self.tell
         )
 
     async def take_picture(self, robot: str, camera: str) -> CameraPicture:
+        self.asked.append(self.time_s)
+        self.time_s += self.takes_s
         if robot in self.gone:
             raise ConflictError("it is not there")
         if camera == "broken":
@@ -65,7 +78,11 @@ class Filmed:
         await asyncio.sleep(0)
 
     def tell(self, task: Task) -> None:
-        self.doing = asyncio.create_task(cast(Any, task()))
+        self.doing.append(asyncio.create_task(self.do_in_turn(task)))
+
+    async def do_in_turn(self, task: Task) -> None:
+        async with self.turn:
+            await task()
 
     def stamp(self) -> dict[str, Any]:
         now = datetime(2026, 1, 2, tzinfo=UTC)
@@ -74,6 +91,7 @@ class Filmed:
     async def commit(
         self, events: Sequence[ev.Event], *, pictures: Mapping[UUID, bytes] | None = None
     ) -> None:
+        await self.may_commit.wait()
         self.events += events
         self.pictures.update(pictures or {})
         for each in events:
@@ -209,3 +227,60 @@ async def test_nothing_is_kept_once_the_run_has_ended() -> None:
     run.recorder.end()
     await run.comes_to_an_end()
     assert run.kept() == []
+
+
+async def test_a_robot_that_has_not_taken_its_commands_is_asked_for_nothing() -> None:
+    run = Filmed(settings(after_s=4.0))
+    run.busy.add("arm")
+    run.recorder.fault("arm")
+    await run.passes(2.0)
+    assert run.asked == []
+    run.busy.clear()
+    await run.comes_to_an_end()
+    assert run.kept()[0] >= 2.0
+
+
+async def test_a_robot_is_told_what_follows_from_its_fault_before_it_is_asked() -> None:
+    run = Filmed(settings(after_s=4.0))
+    turn = list[Task]()
+    run.recorder._tell = turn.append
+    run.recorder.fault("arm")
+    await run.comes_to_an_end()
+    assert run.asked == []
+    assert len(turn) == 1
+    await turn[0]()
+    await run.comes_to_an_end()
+    assert run.asked != []
+
+
+async def test_a_slow_robot_has_most_of_its_time_for_itself() -> None:
+    run = Filmed(settings(), takes_s=0.5)
+    await run.recorder.record(40.0, "anna")
+    await run.comes_to_an_end()
+    assert 5 <= len(run.asked) * run.takes_s <= 11
+
+
+async def test_a_robot_that_never_answers_is_asked_ever_more_rarely() -> None:
+    run = Filmed(settings(before_s=2.0), cameras={"arm": ["broken"]})
+    run.recorder.begin()
+    await run.passes(300.0)
+    run.recorder.end()
+    assert 5 <= len(run.asked) <= 20
+
+
+async def test_pictures_that_wait_for_the_journal_have_no_more_room_than_a_run() -> None:
+    run = Filmed(settings(recorded_bytes=20 * JPEG_BYTES))
+    await run.recorder.record(60.0, "anna")
+    run.may_commit.clear()
+    await run.comes_to_an_end()
+    assert len(run.asked) < 40
+    run.may_commit.set()
+    await asyncio.gather(*run.doing)
+    assert len(run.pictures) == 19
+
+
+async def test_a_robot_that_has_gone_is_not_recorded() -> None:
+    run = Filmed(settings())
+    run.proxies["arm"].doing = RobotActivity.ABSENT
+    with pytest.raises(ConflictError, match="no robot of this run that is there has a camera"):
+        await run.recorder.record(4.0, "anna")
