@@ -1,10 +1,11 @@
 """The models of robots over REST: their files, for drawing them, and robots' own ones."""
 
+from itertools import chain
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
-from starlette.responses import FileResponse
+from starlette.responses import FileResponse, StreamingResponse
 
 from mend.documents.spellings import SEEN_CHARACTERS
 from mend.errors import NotFoundError
@@ -194,8 +195,11 @@ async def _own_file(own: OwnModel, file: str, request: Request) -> Response:
     headers = _headers(f'"{own.version}"')
     if _is_known(request, headers):
         return Response(status_code=304, headers=headers)
-    content = await run_in_threadpool(own.read, file)
-    return Response(content, media_type=_media_type(file), headers=headers)
+    # In pieces, as a few clients that read slowly would otherwise take the room of as many files.
+    headers["Content-Length"] = str(own.sizes[own.inside(file)])
+    pieces = own.pieces(file)
+    first = await run_in_threadpool(next, pieces, b"")
+    return StreamingResponse(chain([first], pieces), media_type=_media_type(file), headers=headers)
 
 
 def _headers(etag: str) -> dict[str, str]:

@@ -2,12 +2,14 @@
 
 import json
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from mend.errors import NotFoundError, UnreadableError
 from mend.server.models.checked_archive import BROKEN, VERSION_CHARS
+
+PIECE_BYTES = 256 * 1024
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,19 +26,37 @@ class OwnModel:
     stored_bytes: int
 
     def read(self, file: str) -> bytes:
-        """A file of it, also under its version. Raises `NotFoundError` and `UnreadableError`."""
-        file = file.removeprefix(f"{self.version}/")
-        if file not in self.sizes:
-            raise NotFoundError(f"the robot model '{self.name}' has no file of this name")
+        """A file of it, whole. Raises as `pieces`."""
+        return b"".join(self.pieces(file))
+
+    def pieces(self, file: str) -> Iterator[bytes]:
+        """A file of it, also under its version, a piece at a time; the first tells how it is.
+
+        Raises `NotFoundError`, also once it is replaced, and `UnreadableError`.
+        """
         try:
             with zipfile.ZipFile(self.archive) as archive:
-                return archive.read(file)
+                if json.loads(archive.comment) != [self.name, self.version]:
+                    raise self._gone()
+                with archive.open(self.inside(file)) as opened:
+                    while piece := opened.read(PIECE_BYTES):
+                        yield piece
         except FileNotFoundError:
-            raise NotFoundError(f"there is no robot model '{self.name}' any more") from None
+            raise self._gone() from None
         except (OSError, *BROKEN) as error:
             raise UnreadableError(
                 f"the robot model '{self.name}' cannot be read ({error}): upload it again"
             ) from error
+
+    def inside(self, file: str) -> str:
+        """The name that a file has in the archive. Raises `NotFoundError`."""
+        file = file.removeprefix(f"{self.version}/")
+        if file not in self.sizes:
+            raise NotFoundError(f"the robot model '{self.name}' has no file of this name")
+        return file
+
+    def _gone(self) -> NotFoundError:
+        return NotFoundError(f"there is no robot model '{self.name}' of this version any more")
 
 
 def with_label(archive: bytes, name: str, version: str) -> bytes:

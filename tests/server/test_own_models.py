@@ -11,7 +11,7 @@ from people import serving_people
 from service_under_test import ServiceUnderTest, build
 from small_model import BARE, DESCRIPTION, OBJ, STL, packed
 
-from mend.errors import ConflictError, UnavailableError
+from mend.errors import ConflictError, NotFoundError, UnavailableError
 from mend.server.access.deeds import deed_of
 from mend.server.access.roles import Role
 from mend.server.journal import events as ev
@@ -103,6 +103,27 @@ async def test_what_is_refused_leaves_what_was_there(
     assert why in refused.json()["detail"]
     assert (await client.get("/api/models")).json() == [before]
     assert (await client.get(before["urdf"])).text == DESCRIPTION
+
+
+async def test_a_large_file_is_served_whole(client: httpx.AsyncClient) -> None:
+    large = OBJ + b"v 0 0 0\n" * 10**5
+    sent = packed({"meshes/base.obj": large})
+    kept = (await client.put("/api/models/lamp", content=sent, headers=ZIP)).json()
+    served = await client.get(kept["urdf"].replace("robot.urdf", "meshes/base.obj"))
+    assert served.content == large
+    assert served.headers["content-length"] == str(len(large))
+
+
+async def test_a_version_that_is_replaced_meanwhile_is_gone_and_no_other(tmp_path: Path) -> None:
+    journal = SqliteJournal(":memory:")
+    models = own_models(tmp_path / "models", journal)
+    before, _ = await models.keep("lamp", packed(), ANNA, packed=True)
+    after, _ = await models.keep("lamp", BARE.encode(), ANNA, packed=False)
+    for file in ("robot.urdf", "meshes/base.obj"):
+        with pytest.raises(NotFoundError, match="of this version any more"):
+            before.read(file)
+    assert after.read("robot.urdf").decode() == BARE
+    journal.close()
 
 
 async def test_robots_give_their_own_model_and_no_other(tmp_path: Path) -> None:
