@@ -1,5 +1,6 @@
 """The runs of a service, for its client: begun, watched and steered."""
 
+from collections.abc import Iterable
 from datetime import datetime
 from typing import Any, Literal
 from uuid import UUID
@@ -18,6 +19,7 @@ from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.steering_views import AnySteering, NodeSteeringView, SteeringView
 from mend.server.runtime.views import (
     LeafSaid,
+    RunStatus,
     RunSummary,
     RunView,
 )
@@ -33,12 +35,21 @@ class RunCalls(Wire):
         return await self._post("/api/runs", RunSummary, request.model_dump(mode="json"))
 
     async def runs(
-        self, *, limit: int = 100, offset: int = 0, before: UUID | None = None
+        self,
+        *,
+        limit: int = 100,
+        offset: int = 0,
+        before: UUID | None = None,
+        status: Iterable[RunStatus] = (),
     ) -> list[RunSummary]:
-        """Runs, newest first; only those that began before another, for the next page."""
+        """Runs, newest first; only those that began before another, for the next page.
+
+        `status`: only runs in one of these states, if any is given.
+        """
         last = None if before is None else str(before)
+        states = [each.value for each in status]
         return await self._get(
-            "/api/runs", list[RunSummary], limit=limit, offset=offset, before=last
+            "/api/runs", list[RunSummary], limit=limit, offset=offset, before=last, status=states
         )
 
     async def issues(

@@ -2,9 +2,11 @@
 
 from mend.server.cli.failures import CommandLineError
 from mend.server.client import MendClient
-from mend.server.runtime.views import NodeView, RunSummary
+from mend.server.runtime.views import NodeView, RunStatus, RunSummary
 
 LISTED = 5
+MOST_RUNS = 1000
+GO_ON = (RunStatus.RUNNING, RunStatus.PAUSED)
 
 
 async def find_run(client: MendClient, said: str | None) -> RunSummary:
@@ -12,10 +14,11 @@ async def find_run(client: MendClient, said: str | None) -> RunSummary:
 
     Only runs that go on are meant. Raises `CommandLineError`, and the client's errors.
     """
-    runs = [each for each in await client.runs() if not each.status.ended]
+    # However many have ended since they began.
+    runs = await client.runs(status=GO_ON, limit=MOST_RUNS)
     wanted = (said or "").lower()
-    by_id = [each for each in runs if str(each.id).startswith(wanted)]
-    found = by_id or [each for each in runs if each.tree == said]
+    # The name of a tree may be the beginning of another run's id.
+    found = [each for each in runs if str(each.id).startswith(wanted) or each.tree == said]
     if len(found) == 1:
         return found[0]
     listed = ", ".join(f"{each.id} ({each.tree})" for each in (found or runs)[:LISTED])
