@@ -24,7 +24,15 @@ MOST_URDF_BYTES = 4 * 1024**2
 VERSION_CHARS = 12
 NO_DATE = (1980, 1, 1, 0, 0, 0)
 
-BROKEN = (zipfile.BadZipFile, NotImplementedError, RuntimeError, zlib.error, EOFError, ValueError)
+BROKEN = (
+    zipfile.BadZipFile,
+    NotImplementedError,
+    RuntimeError,
+    zlib.error,
+    EOFError,
+    ValueError,
+    IndexError,
+)
 """What the reader of archives may raise of bytes that are none, or of a kind unknown to it."""
 
 

@@ -9,7 +9,13 @@ from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
 
-from mend.errors import ConflictError, NotFoundError, UnavailableError, UnreadableError
+from mend.errors import (
+    ConflictError,
+    NotFoundError,
+    UnavailableError,
+    UnreadableError,
+    WrongInputError,
+)
 from mend.server.journal.events import Author, ModelDeleted, ModelKept
 from mend.server.journal.file_mode import OWNERS_FILE, OWNERS_FOLDER
 from mend.server.journal.journal import Entry, Journal
@@ -26,6 +32,7 @@ from mend.server.off_loop import OffLoop
 log = logging.getLogger(__name__)
 
 SUFFIX = ".model.zip"
+STAGED = ".new"
 
 
 class OwnModels:
@@ -111,6 +118,10 @@ class OwnModels:
 
     def _folder_for(self, name: str) -> Path:
         self._refuse_taken(name)
+        if "/" in name or name in (".", ".."):
+            raise WrongInputError(
+                f"a robot model cannot be called '{name}': it has to be one part of an address"
+            )
         if self._folder is None:
             raise ConflictError(
                 "this service keeps its journal in memory, and so no models: give it a 'journal'"
@@ -155,6 +166,10 @@ class OwnModels:
 
 def _found_in(folder: Path | None) -> list[OwnModel]:
     found = []
+    # Of what was being kept when the service was killed.
+    for staged in folder.glob(f"*{SUFFIX}{STAGED}") if folder is not None else ():
+        with suppress(OSError):
+            staged.unlink()
     for archive in sorted(folder.glob(f"*{SUFFIX}")) if folder is not None else ():
         try:
             found.append(read_label(archive))
@@ -167,7 +182,7 @@ def _stage(folder: Path, name: str, archive: bytes) -> Path:
     """Write a file beside the one that it is to be. Raises `UnavailableError`."""
     # Whatever a robot is called, its file has a name that every file system takes.
     key = hashlib.sha256(name.encode()).hexdigest()[:32]
-    staged = folder / f"{key}{SUFFIX}.new"
+    staged = folder / f"{key}{SUFFIX}{STAGED}"
     try:
         folder.mkdir(OWNERS_FOLDER, exist_ok=True)
         staged.unlink(missing_ok=True)

@@ -182,6 +182,17 @@ def test_packings_that_unpack_without_bounds_are_refused(packing: int) -> None:
         check_archive(sent.getvalue(), ROOM)
 
 
+def test_a_file_without_a_name_is_refused() -> None:
+    good = packed({"x": b""})
+    entry, end = good.rindex(b"PK\x01\x02"), good.rindex(b"PK\x05\x06")
+    torn = bytearray(good[: entry + 46] + good[entry + 47 :])
+    torn[entry + 28] = 0
+    size = int.from_bytes(good[end + 12 : end + 16], "little") - 1
+    torn[end + 11 : end + 15] = size.to_bytes(4, "little")
+    with pytest.raises(WrongInputError, match="cannot be read"):
+        check_archive(bytes(torn), ROOM)
+
+
 def test_many_files_are_refused() -> None:
     with pytest.raises(WrongInputError, match="more than 500 files"):
         check_archive(packed({f"{number}.txt": b"" for number in range(501)}), ROOM)

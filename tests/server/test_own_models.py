@@ -11,7 +11,7 @@ from people import serving_people
 from service_under_test import ServiceUnderTest, build
 from small_model import BARE, DESCRIPTION, OBJ, STL, packed
 
-from mend.errors import ConflictError, NotFoundError, UnavailableError
+from mend.errors import ConflictError, NotFoundError, UnavailableError, WrongInputError
 from mend.server.access.deeds import deed_of
 from mend.server.access.roles import Role
 from mend.server.journal import events as ev
@@ -156,11 +156,21 @@ async def test_models_are_there_after_a_restart(tmp_path: Path) -> None:
     (folder / "half.model.zip.new").write_bytes(b"torn")
     again = own_models(folder, journal)
     assert again.all() == [model]
+    assert not (folder / "half.model.zip.new").exists()
     assert model.read("robot.urdf").decode() == DESCRIPTION
     [kept] = await journal.read_readable(0, 10, ev.NO_RUN)
     deed = deed_of(kept)
     assert deed is not None
     assert (deed.who, deed.what) == ("anna", "uploaded the robot model 'lamp'")
+    journal.close()
+
+
+@pytest.mark.parametrize("name", [".", "..", "left/arm"])
+async def test_a_name_is_one_part_of_an_address(tmp_path: Path, name: str) -> None:
+    journal = SqliteJournal(":memory:")
+    models = own_models(tmp_path / "models", journal)
+    with pytest.raises(WrongInputError, match="one part of an address"):
+        await models.keep(name, packed(), ANNA, packed=True)
     journal.close()
 
 
