@@ -87,7 +87,7 @@ class Limits(BaseModel):
     uploaded_chars: AtLeastOne = 32 * 1024**2
     """Characters of all uploaded files of one kind together."""
     model_bytes: AtLeastOne = 64 * 1024**2
-    """Bytes of the files of one uploaded robot model, unpacked."""
+    """Bytes of the files of one uploaded robot model, unpacked, each as often as it is drawn."""
     models_bytes: AtLeastOne = 512 * 1024**2
     """Bytes of all uploaded robot models as they are kept, packed."""
     waiting_chars: AtLeastOne = 64 * 1024**2

@@ -59,7 +59,7 @@ def check_archive(sent: bytes, most_bytes: int) -> CheckedArchive:
     What it does not name is left out. Raises `WrongInputError`.
     """
     with _opened(sent) as archive:
-        return _pack(_drawn_from(_Files(archive, most_bytes)))
+        return _pack(_drawn_from(_Files(archive, most_bytes), most_bytes))
 
 
 @contextmanager
@@ -115,11 +115,7 @@ class _Files:
         if found.compress_type not in PACKINGS:
             raise WrongInputError(f"{name} is packed in another way: deflate it, or store it")
         self._bytes += found.file_size
-        if self._bytes > self._most_bytes:
-            raise WrongInputError(
-                f"the files of a model may have {self._most_bytes} bytes in all, unpacked",
-                limit="model_bytes",
-            )
+        _refuse_large(self._bytes, self._most_bytes)
         if name == URDF:
             _refuse_long(found.file_size)
         # No more than it says is unpacked, which `ZipFile.read` does first and then cuts off.
@@ -132,7 +128,16 @@ def _refuse_long(size: int) -> None:
         raise WrongInputError(f"{URDF} is longer than {MOST_URDF_BYTES // 1024**2} MiB")
 
 
-def _drawn_from(files: _Files) -> dict[str, bytes]:
+def _refuse_large(size: int, most_bytes: int) -> None:
+    if size > most_bytes:
+        raise WrongInputError(
+            f"the files of a model may have {most_bytes} bytes in all, unpacked and each as often "
+            "as it is drawn",
+            limit="model_bytes",
+        )
+
+
+def _drawn_from(files: _Files, most_bytes: int) -> dict[str, bytes]:
     description = files.read(URDF, "a model")
     urdf = read_urdf(description)
     check_shape(urdf)
@@ -142,6 +147,8 @@ def _drawn_from(files: _Files) -> dict[str, bytes]:
         if name not in found:
             found[name] = files.read(name, by)
             wanted += [(each, name) for each in files_named_in(name, found[name])]
+    # A browser makes a mesh anew for each shape that has it.
+    _refuse_large(sum(len(found[name]) for name in urdf.files), most_bytes)
     return found
 
 

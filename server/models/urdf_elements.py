@@ -9,6 +9,7 @@ from mend.server.models.archive_names import MESHES, PICTURES, URDF, named_file
 from mend.server.models.xml_events import read_elements
 
 MOST_LINKS = 1000
+MOST_SHAPES = 5000
 JOINT_TYPES = frozenset({"fixed", "revolute", "continuous", "prismatic", "planar", "floating"})
 SHAPES = frozenset({"box", "sphere", "cylinder", "capsule", "mesh"})
 
@@ -74,6 +75,7 @@ class _Reader:
         self.urdf = Urdf()
         self._within: list[str] = []
         self._shapes = 0
+        self._visuals = 0
 
     def begin(self, name: str, attributes: Mapping[str, str]) -> None:
         path = (*self._within, name)
@@ -123,7 +125,11 @@ class _Reader:
                 _check_numbers(name, attribute, attributes[attribute], count)
 
     def _in_visual(self, path: Sequence[str], attributes: Mapping[str, str]) -> None:
-        if path == ("geometry",):
+        if not path:
+            self._visuals += 1
+            if self._visuals > MOST_SHAPES:
+                raise _wrong(f"it draws more than {MOST_SHAPES} shapes")
+        elif path == ("geometry",):
             self._shapes = 0
         elif len(path) == 2 and path[0] == "geometry":
             self._shapes += 1

@@ -223,3 +223,57 @@ def test_bytes_that_are_no_archive_are_refused_with_a_sentence(
     for sent in (noise, good[:at], good[:at] + damage + good[at + len(damage) :]):
         with contextlib.suppress(WrongInputError):
             check_archive(sent, ROOM)
+
+
+def scene(nodes: str) -> bytes:
+    return f"<COLLADA><library_nodes>{nodes}</library_nodes></COLLADA>".encode()
+
+
+def doubling(times: int) -> bytes:
+    """Nodes each of which holds the one before it twice."""
+    pair = "<node id='n{}'><instance_node url='#n{}'/><instance_node url='#n{}'/></node>"
+    return scene("<node id='n0'/>" + "".join(pair.format(i, i - 1, i - 1) for i in range(1, times)))
+
+
+@pytest.mark.parametrize(
+    ("shade", "why"),
+    [
+        (doubling(40), "more than 100000 nodes"),
+        (scene("<node id='a'><instance_node url='#a'/></node>"), "holds itself"),
+        (scene("<node id='a'><node id='a'/></node>"), "holds itself"),
+        (b"<COLLADA><accessor stride='999999999'/></COLLADA>", "'stride' of an <accessor>"),
+        (b"<COLLADA><vcount>3 999999999</vcount></COLLADA>", "more corners than there are"),
+        (b"<COLLADA><vcount>three</vcount></COLLADA>", "more corners than there are"),
+    ],
+)
+def test_a_mesh_that_becomes_far_more_than_it_is_is_refused(shade: bytes, why: str) -> None:
+    with pytest.raises(WrongInputError, match=why):
+        check_archive(packed({"meshes/shade.dae": shade}), ROOM)
+
+
+def test_a_file_counts_as_often_as_it_is_drawn() -> None:
+    shapes = "<visual><geometry><mesh filename='big.obj'/></geometry></visual>" * 3
+    sent = packed(
+        {
+            "robot.urdf": urdf(f"<link name='b'>{shapes}</link>{JOINT}"),
+            "big.obj": OBJ + b"#" * 400_000,
+        }
+    )
+    with pytest.raises(WrongInputError, match="as often as it is drawn") as refused:
+        check_archive(sent, ROOM)
+    assert refused.value.limit == "model_bytes"
+    assert check_archive(sent, 2 * ROOM).version
+
+
+def test_many_shapes_are_refused() -> None:
+    shapes = "<visual><geometry><box size='1 1 1'/></geometry></visual>" * 5001
+    with pytest.raises(WrongInputError, match="more than 5000 shapes"):
+        check_description(urdf(f"<link name='b'>{shapes}</link>{JOINT}"))
+
+
+def test_nodes_may_hold_others_and_shapes_have_many_corners() -> None:
+    counts = b"<library_geometries><vcount>4 3\n4 </vcount><p>" + b"1 " * 11 + b"</p>"
+    shade = doubling(10).replace(
+        b"<library_nodes>", counts + b"</library_geometries><library_nodes>"
+    )
+    assert check_archive(packed({"meshes/shade.dae": shade}), ROOM).version
