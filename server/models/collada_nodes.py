@@ -15,13 +15,17 @@ class NodeTally:
 
     def __init__(self, file: str) -> None:
         self._file = file
+        self._parts = 0
         self._open: list[str] = []
         self._roots: list[str] = []
         self._under: dict[str, list[str]] = {}
         self._shapes: Counter[str] = Counter()
 
     def begin(self, name: str, attributes: Mapping[str, str]) -> None:
-        """An element has begun."""
+        """An element has begun. Raises `WrongInputError` where there are too many."""
+        if name in ("node", "visual_scene") or (self._open and name.startswith("instance_")):
+            self._parts += 1
+            self._refuse_many(self._parts)
         if name in ("node", "visual_scene"):
             key = f"#{attributes.get('id') or f' {len(self._under)}'}"
             holders = self._under[self._open[-1]] if self._open else self._roots
@@ -47,7 +51,10 @@ class NodeTally:
                 sizes[key] = min(1 + self._shapes[key] + held, MOST_PARTS + 1)
         except CycleError:
             raise WrongInputError(f"{self._file}: a node of it holds itself") from None
-        if sum(sizes[each] for each in self._roots) > MOST_PARTS:
+        self._refuse_many(sum(sizes[each] for each in self._roots))
+
+    def _refuse_many(self, parts: int) -> None:
+        if parts > MOST_PARTS:
             raise WrongInputError(
                 f"{self._file}: its nodes hold more than {MOST_PARTS} nodes and shapes, each "
                 "counted as often as it is named"

@@ -239,6 +239,7 @@ def doubling(times: int) -> bytes:
     ("shade", "why"),
     [
         (doubling(40), "more than 100000 nodes"),
+        (scene("<node/>" * 100_001), "more than 100000 nodes"),
         (scene("<node id='a'><instance_node url='#a'/></node>"), "holds itself"),
         (scene("<node id='a'><node id='a'/></node>"), "holds itself"),
         (b"<COLLADA><accessor stride='999999999'/></COLLADA>", "'stride' of an <accessor>"),
