@@ -37,14 +37,12 @@ _MAX_SHIFT_M = 0.6
 class Aligned:
     """The best place of the lattice, and by how much it beats the prediction (log-likelihood).
 
-    `fit` is the share of the near points that lie there on the map or on what was seen just before,
-    `unexplained` the share that the others have in all points.
+    `fit` is the share of the near points that lie there on the map or on what was seen just before.
     """
 
     pose: Poses
     gain: float
     fit: float
-    unexplained: float
 
 
 class Aligner:
@@ -76,8 +74,7 @@ class Aligner:
         """
         near = points[np.hypot(*points.T) < _MAX_REACH_M]
         if not len(near):
-            return Aligned(predicted, 0.0, 1.0, 0.0)
-        near_share = len(near) / len(points)
+            return Aligned(predicted, 0.0, 1.0)
         near = near[:: len(near) // _MAX_POINTS + 1]
         reach_m = float(np.percentile(np.hypot(*near.T), 80))
         shift_m = float(np.clip(_DEVIATIONS * deviations[:2].max(), _MIN_SHIFT_M, _MAX_SHIFT_M))
@@ -97,7 +94,7 @@ class Aligner:
         moved = np.array([shifts[best[1]], shifts[best[2]], turns[best[0]]])
         pose = predicted + moved
         pose[2] = wrap_angle(pose[2])
-        return Aligned(pose, float(gain), fit, max(1.0 - fit, 0.0) * near_share)
+        return Aligned(pose, float(gain), fit)
 
     def _surroundings(
         self, recent: Floats, center: Floats, shift_m: float, on_map: bool

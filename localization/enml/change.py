@@ -1,17 +1,84 @@
-"""What changed between two scans: what stood there is gone, or something stands where was none."""
+"""What changed between two scans: what stood there is gone, or something stands where was none.
+
+And what did not: what is seen again where it was.
+"""
+
+from math import cos
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.localization.enml.episode import Episode
+from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import PoseNode
 from mend.localization.enml.problem import Floats
-from mend.localization.pose import Poses, compose, relative, transform
+from mend.localization.pose import Poses, compose, relative, transform, turn, wrap
 
 _THROUGH_M = 0.3
 _BEAMS_ASIDE = 2
 """A point is seen through only if its neighbouring beams go past it too: edges move a little."""
 _GAP_IN_BEAMS = 2.5
 _LEAST_COMPARED = 20
+LEAST_RETURNS = 40
+"""Fewer returns say nothing about where a robot is."""
+_COMPARED_WITHIN_M = 1.2
+_OFF_MAP_TELLS = 0.2
+"""Where less of a scan is on no map, all of it is to be recognized."""
+
+
+class Strangeness:
+    """Compares the newest scan with the last that was familiar; a strange one is not yet."""
+
+    def __init__(self, parameters: EnmlParameters) -> None:
+        self._parameters = parameters
+        self._familiar: int | None = None
+
+    def weigh(self, episode: Episode, within_m: float) -> float:
+        """What speaks for having been carried since then, as log odds; 0 if nothing can be said.
+
+        Nothing can where the scans are farther apart than `within_m` (and radians, together).
+        Only what is on no map is to be recognized, as walls look the same in many places. What
+        changed, less what is recognized, is more the farther the scans are apart (metres and
+        radians together), and tells less.
+        """
+        its = self._parameters
+        before = self._compared_with(episode)
+        if before is None:
+            return 0.0
+        apart = _apart(episode, before)
+        if apart > within_m:
+            return 0.0
+        earlier, later = episode.nodes[before], episode.nodes[-1]
+        there, here = episode.poses[before], episode.poses[-1]
+        recognized = recognized_points(earlier, later, relative(there, here), its)
+        off_map = ~later.is_ltf
+        if off_map.sum() >= LEAST_RETURNS and off_map.mean() > _OFF_MAP_TELLS:
+            recognized = recognized[off_map]
+        strange = changed(earlier, there, later, here) - float(recognized.mean())
+        beyond = strange + its.familiar_share - its.strange_per_m * apart
+        speaks = its.strange_counts * beyond / (its.strange_spread_m + apart) ** 2
+        self._familiar = earlier.identity if speaks > 0.0 else None
+        return max(speaks, -its.familiar_tells_at_most)
+
+    def _compared_with(self, episode: Episode) -> int | None:
+        """The last familiar pose, unless it is too far back, or else the last that saw enough."""
+        *nodes, newest = episode.nodes
+        if len(newest.scan_points) < LEAST_RETURNS:
+            return None
+        enough = [
+            index for index, node in enumerate(nodes) if len(node.scan_points) >= LEAST_RETURNS
+        ]
+        for index in enough:
+            near = _apart(episode, index) < _COMPARED_WITHIN_M
+            if nodes[index].identity == self._familiar and near:
+                return index
+        return enough[-1] if enough else None
+
+
+def _apart(episode: Episode, before: int) -> float:
+    """Metres moved and radians turned on the way from a pose to the newest, together."""
+    steps = relative(episode.poses[before:-1], episode.poses[before + 1 :])
+    return float((np.hypot(steps[:, 0], steps[:, 1]) + np.abs(wrap(steps[:, 2]))).sum())
 
 
 def changed(earlier: PoseNode, earlier_pose: Poses, later: PoseNode, pose: Poses) -> float:
@@ -48,3 +115,20 @@ def _free_at(node: PoseNode, bearings: Floats) -> tuple[Floats, NDArray[np.bool_
     looked = (after > 0) & (after < count) & (gaps < _GAP_IN_BEAMS * node.beam_spacing_rad)
     aside = after[:, None] + np.arange(-_BEAMS_ASIDE, _BEAMS_ASIDE)
     return node.ranges_m[np.clip(aside, 0, count - 1)].min(axis=1), looked
+
+
+def recognized_points(
+    earlier: PoseNode, later: PoseNode, motion: Poses, parameters: EnmlParameters
+) -> NDArray[np.bool_]:
+    """Which points of a scan lie where an earlier one saw some, on a surface that faces alike.
+
+    `motion` leads from the earlier pose to the later. The earlier scan must not be empty.
+    """
+    points = transform(motion, later.scan_points.points)
+    normals = turn(float(motion[2]), later.scan_points.normals)
+    away_m, nearest = earlier.tree.query(points)
+    alike = np.sum(normals * earlier.scan_points.normals[nearest], axis=1)
+    seen: NDArray[np.bool_] = (away_m < parameters.stf_gate_m) & (
+        alike > cos(parameters.stf_max_angle_rad)
+    )
+    return seen

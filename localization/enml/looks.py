@@ -4,19 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mend.localization.distance_field import DistanceField
+from mend.localization.beam_model import BeamModelParameters, log_densities
 from mend.localization.enml.episode import Episode
-from mend.localization.enml.lost import MapFit, evidence
 from mend.localization.enml.pose_node import PoseNode
 from mend.localization.enml.problem import Floats
 from mend.localization.enml.visible import Visible
 from mend.localization.pose import Poses, compose, relative, transform, turn
 
 _MOST_BEAMS = 120
-_ON_WALL_M = 0.15
-_SHARP_M = 0.08
-"""Right places explain what they explain to within the laser's and the map's errors."""
-_IN_VIEW_M = 2.0
 _ROUGHLY_M = 0.4
 """How far ranges are off at a place of the lattice next to the right one."""
 _ROUGHLY_BEHIND_COUNTS = 2.0
@@ -34,20 +29,18 @@ class ScanLook:
     reach_m: float
 
 
-@dataclass(frozen=True, slots=True)
-class Weight:
-    """What speaks for a place, and how sharply what is on the map fits it (returns)."""
+def looks_of(
+    episode: Episode, scans: int, most_beams: int = _MOST_BEAMS, newest: int | None = None
+) -> list[ScanLook]:
+    """So many scans, spread over an episode, the newest among them; of each so many beams.
 
-    evidence: MapFit
-    sharp: float
-
-
-def looks_of(episode: Episode, scans: int, most_beams: int = _MOST_BEAMS) -> list[ScanLook]:
-    """So many scans, spread over an episode, the newest among them; of each so many beams."""
-    newest = episode.poses[-1]
+    Only of the `newest` poses, unless that is None.
+    """
+    last = len(episode) - 1
+    first = 0 if newest is None else max(len(episode) - newest, 0)
     return [
-        look_of(episode.nodes[index], relative(newest, episode.poses[index]), most_beams)
-        for index in np.unique(np.linspace(len(episode) - 1, 0, scans).astype(int))[::-1]
+        look_of(episode.nodes[index], relative(episode.poses[-1], episode.poses[index]), most_beams)
+        for index in np.unique(np.linspace(last, first, scans).astype(int))[::-1]
     ]
 
 
@@ -64,18 +57,16 @@ def look_of(node: PoseNode, pose: Poses, most_beams: int = _MOST_BEAMS) -> ScanL
     )
 
 
-def weigh(visible: Visible, field: DistanceField, looks: list[ScanLook], place: Poses) -> Weight:
-    """What the looks say about the newest pose being at a place."""
-    total, sharp = MapFit(), 0.0
+def log_likelihood(
+    visible: Visible, looks: list[ScanLook], place: Poses, model: BeamModelParameters
+) -> float:
+    """Of the newest pose being at a place, per scan."""
+    total = 0.0
     for look in looks:
-        sensor = compose(place, look.sensor)
-        expected_m = visible.cast(sensor, look.bearings, look.reach_m)
-        away_m = field.at(transform(place, look.points))
-        in_view = np.abs(look.ranges_m - expected_m) < _IN_VIEW_M
-        on_map = (away_m < _ON_WALL_M) & in_view
-        total = total.faded(1.0, evidence(look.ranges_m, expected_m, on_map))
-        sharp += float(np.exp(-0.5 * (away_m[in_view] / _SHARP_M) ** 2).sum())
-    return Weight(total, sharp)
+        expected_m = visible.cast(compose(place, look.sensor), look.bearings, look.reach_m)
+        if len(expected_m):
+            total += float(log_densities(look.ranges_m, expected_m, model).mean())
+    return model.trust * model.beams * total / len(looks)
 
 
 def glance(visible: Visible, look: ScanLook, place: Poses) -> float:

@@ -87,58 +87,51 @@ class EnmlParameters:
     settled_rad: float = radians(0.25)
     """... and turned less (ours)."""
 
-    evidence_fading: float = 0.8
-    """What is left of earlier scans' evidence for being lost or not, per update (ours)."""
-    doubt_above: float = 0.5
-    """The robot is looked for elsewhere once the map contradicts it by more than this (ours)..."""
-    lost_above: float = 0.75
-    """... and is lost, found or not, once it does by more than this (ours)."""
-    carried_above: float = 0.65
-    """A robot was carried away if the share of what it sees that has changed since a scan before,
-    the share that fits neither the map nor the scans before, and the share newly seen behind
-    walls of the map are more than this together (ours: 0.63 in the worst of the
-    simulated drives that were looked into)..."""
-    carried_unexplained_counts: float = 2.0
-    """... where what fits nothing counts so many times (ours)..."""
-    carried_behind_counts: float = 5.0
-    """... and what is behind walls so many times (ours)..."""
-    carried_maybe_above: float = 0.25
-    """... if the others alone are more than this (ours)..."""
-    carried_above_per_m: float = 0.5
-    """... and this for each metre moved and radian turned since that scan (ours: what is seen from
-    far apart has less in common)..."""
-    carried_after_scans: int = 2
-    """... in so many scans in a row (ours)."""
-    strange_above: float = 0.3
-    """A robot was carried away, too, if more than this share of what it sees is on no map..."""
-    strange_recognized_below: float = 0.15
-    """... and it recognizes less than this share of that from the poses before (ours: never twice
-    in a row in 23.9 km of simulated drives)..."""
-    strange_within: float = 0.7
-    """... of which the last is no more than so many metres and radians away, together (ours)."""
+    carried_per_m: float = 1e-3
+    """How often a robot is carried away, or loses its way, per metre driven: the prior."""
+    news_after_m: float = 0.3
+    """Scans that are closer together than this (metres and radians together) count for less, as
+    they say much the same (ours)."""
+    scan_tells_at_most: float = 5.0
+    """... and none changes the logarithm of the odds by more than this (ours)."""
+    familiar_share: float = 0.2
+    """At least this share of what is on no map, less what changed, is recognized from a scan just
+    before..."""
+    strange_per_m: float = 0.2
+    """... and so much less per metre and radian that the scans are apart (ours: always in simulated
+    drives, never within 0.5 m after being carried)..."""
+    strange_counts: float = 8.0
+    """... and what is missing speaks for having been carried, by this (ours; log odds)..."""
+    strange_spread_m: float = 0.3
+    """... divided by the square of how far the scans are apart, and this (ours: recognizing is
+    surer near by)..."""
+    familiar_tells_at_most: float = 3.0
+    """... and what is familiar speaks against it by no more than this (ours)."""
+    map_counts: float = 0.1
+    """How much a scan's likelihood on the map counts (ours, as a logistic regression over simulated
+    and real drives has it: where a map is out of date, it is so for many metres)."""
+    lost_above: float = 0.5
+    """A robot says that it is lost where that is more probable than this."""
     alignment_believed_above: float = 0.55
     """The pre-alignment is followed if it lays more than this share of a scan on something (ours:
     0.61 to 0.88 in the worst hundredth of drives)."""
-    found_below: float = 0.3
-    """No place with a measure above this is taken for where a lost robot is (ours)."""
-    confirmed_below: float = 0.1
-    """A doubtful place that a search finds again, with a measure below this, is doubted no more for
-    twice the way between searches (ours)."""
-    recovery_near_m: float = 2.5
-    """How far around the last pose a lost robot is looked for first (published)."""
+    found_above: float = 7.0
+    """How much likelier what is seen has to be at the place where a lost robot is found than
+    anywhere (ours; logarithm per scan)."""
+    known_within_m: float = 2.5
+    """A robot that is put down with a wider standard deviation may be anywhere (published as the
+    reach of its search)."""
     recovery_every_m: float = 0.7
     """A lost robot looks for its place again after driving this far (ours)."""
-    recovery_move_costs: float = 0.2
-    """What any place but its own counts less, for a robot that was not carried, in shares of the
-    returns (ours)."""
-    recovery_lead: float = 0.06
-    """How much better than all others, in shares of the returns, the place has to be at first..."""
-    recovery_patience_m: float = 6.0
-    """... which becomes less until, after driving this far, a quarter of it will do (ours)."""
+    recovery_lead: float = 5.0
+    """How much likelier the place has to be than all others, at first (ours; logarithm per
+    scan)..."""
+    recovery_patience_m: float = 8.0
+    """... which becomes less until, after half of this way, half of it will do (ours)."""
+    found_is_wrong: float = 0.1
+    """How probable it is at first that a place which was found is not the right one (ours)..."""
     probation_m: float = 5.0
-    """A place that was found is held against the others that were open for this far (ours)..."""
-    proven_below: float = 0.1
-    """... and against the whole map where its measure is not below this (ours)."""
+    """... and it is held against the others that were open for this far (ours)."""
 
     def __post_init__(self) -> None:
         for field in fields(self):

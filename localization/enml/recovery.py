@@ -1,4 +1,4 @@
-"""Finding a lost robot again: what it saw since, laid over the map near by, then everywhere."""
+"""Finding a lost robot again: what it saw since, laid over the map."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,14 +6,14 @@ from itertools import product
 
 import numpy as np
 
+from mend.localization.beam_model import BeamModelParameters
 from mend.localization.distance_field import DistanceField
+from mend.localization.enml.anywhere import Anywhere
 from mend.localization.enml.episode import Episode
 from mend.localization.enml.global_search import GlobalSearch, Region, distinct, same_place
-from mend.localization.enml.looks import ScanLook, Weight, glance, look_of, looks_of, weigh
-from mend.localization.enml.lost import MapFit
+from mend.localization.enml.looks import ScanLook, glance, log_likelihood, looks_of
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.polishing import polish
-from mend.localization.enml.pose_node import PoseNode
 from mend.localization.enml.problem import Floats
 from mend.localization.enml.visible import Visible
 from mend.localization.pose import Poses, compose, relative, transform
@@ -29,21 +29,21 @@ _LAST_GATES_M = (0.25, 0.15, 0.15)
 _AROUND_M = (-0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6)
 """How far from where points have been moved to they may fit still better."""
 _LEAST_FINALISTS, _MOST_FINALISTS = 40, 240
-_IN_THE_RUNNING = 0.15
+_IN_THE_RUNNING = 12.0
 """... and the best of those polished and weighed by more: many where many look much the same."""
 _SCANS_POLISHED = 3
 _SCANS_WEIGHED = 6
-_LEAST_EXPLAINED = 0.15
-"""Where the map explains fewer of the returns, no robot is found."""
-_LEAST_ON_MAP = 40.0
-"""No robot is found by fewer returns than these."""
-_LEAST_DOUBT = 0.25
-"""However far it has driven, a robot does not choose between places that are all the same to it."""
-_LEAST_SCORE_ELSEWHERE = 0.35
-"""A robot that was not carried goes to no other place that fits less well."""
-_BEHIND_COUNTS = 8.0
-"""Right places have hardly any return from behind a wall, those that look alike a few percent."""
+_LEAST_DOUBT = 0.5
+"""The share of the lead that is always needed, and all that is where the robot is followed."""
 
+_SHARP = BeamModelParameters(
+    hit_share=0.4,
+    short_share=0.59,
+    random_share=0.01,
+    hit_deviation_m=0.1,
+    short_decay_per_m=0.05,
+)
+"""Places are told apart by some centimetres, and by the walls that they would be seen through."""
 
 MayBeAt = Callable[[float, float], bool]
 """Whether the robot may be at a point of the map at all, x and y in metres."""
@@ -54,19 +54,8 @@ class Found:
     """A place for the newest pose, and what speaks for it."""
 
     pose: Poses
-    weight: Weight
-
-    @property
-    def evidence(self) -> MapFit:
-        """What the map says about what is seen from there."""
-        return self.weight.evidence
-
-    @property
-    def score(self) -> float:
-        """At most 1: how well the map explains the returns, less those that could not be."""
-        returns = self.evidence.returns
-        against = _BEHIND_COUNTS * self.evidence.behind
-        return (self.weight.sharp - against) / returns if returns else 0.0
+    score: float
+    """Log-likelihood per scan, over that of a robot that may be anywhere."""
 
 
 class Recovery:
@@ -77,36 +66,32 @@ class Recovery:
 
     def __init__(
         self,
-        segments: Floats,
-        region: Region,
+        everywhere: Region,
         field: DistanceField,
-        max_range_m: float,
+        visible: Visible,
+        anywhere: Anywhere,
         parameters: EnmlParameters,
         may_be_at: MayBeAt | None = None,
     ) -> None:
-        self._segments = segments
         self._may_be_at = may_be_at
-        self._everywhere = region
+        self._everywhere = everywhere
         self._search = GlobalSearch(field)
-        self._field = field
-        self._visible = Visible(segments, max_range_m)
+        self._visible = visible
+        self._anywhere = anywhere.by(_SHARP)
         self._parameters = parameters
         self.forget()
 
-    def forget(self, last: Poses | None = None) -> None:
-        """Begin anew: the robot may be elsewhere than all places so far.
-
-        Where it was `last` is believed sooner than other places, as much may just have changed.
-        """
-        self._last = last
-        self._open: Floats = np.zeros((0, 3)) if last is None else last[None].copy()
+    def forget(self) -> None:
+        """Begin anew: the robot may be elsewhere than all places so far."""
+        self._open: Floats = np.zeros((0, 3))
+        self._won: Poses | None = None
 
     def move(self, motion: Poses) -> None:
         """Let the open places come along with the robot."""
         if len(self._open):
             self._open = compose(self._open, motion)
-        if self._last is not None:
-            self._last = compose(self._last, motion)
+        if self._won is not None:
+            self._won = compose(self._won, motion)
 
     def open_places(self, episode: Episode) -> list[Found]:
         """The places that explain what is seen and are hardly worse than the best, best first."""
@@ -115,52 +100,42 @@ class Recovery:
         return [
             each
             for each in ranked
-            if self._explains(each) and each.score > ranked[0].score - _IN_THE_RUNNING
+            if each.score > self._parameters.found_above
+            and each.score > ranked[0].score - _IN_THE_RUNNING
         ]
 
-    def weighed(self, episode: Episode, place: Poses) -> Found:
-        """A place, with what speaks for it."""
-        return self._found([place], looks_of(episode, _SCANS_WEIGHED))[0]
+    def search(self, episode: Episode, followed: Episode | None, path_m: float) -> Found | None:
+        """Where on the map the newest pose is; None if unclear.
 
-    def behind(self, node: PoseNode, pose: Poses) -> float:
-        """The share of a scan's returns from behind walls of the map, seen from a pose."""
-        seen = weigh(self._visible, self._field, [look_of(node, np.zeros(3))], pose).evidence
-        return seen.behind / seen.returns if seen.returns else 0.0
-
-    def search(self, episode: Episode, expected: Poses | None, path_m: float) -> Found | None:
-        """Where the newest pose is, near where it is `expected` or else anywhere; None if unclear.
-
-        `path_m` is how far the robot has driven since it was lost: the farther, the more of the
-        surroundings is in the episode, and the smaller a lead has to be to be believed.
+        Where the robot is still `followed` is believed sooner than other places, which two searches
+        in a row have to find then. `path_m` is how far it has driven since it was lost: the
+        farther, the more of the surroundings is in the episode, and the smaller a lead has to be to
+        be believed.
         """
-        if not len(self._segments):
+        if self._visible.is_empty:
             return None
-        regions = [self._everywhere]
-        if expected is not None:
-            regions.insert(0, Region.around(expected, self._parameters.recovery_near_m))
-        points = _submap(episode)
-        places = [place for region in regions for place in self._climbers(episode, points, region)]
+        places = self._climbers(episode, _submap(episode))
         promising = _in_the_running(self._found(places, looks_of(episode, 2)))
-        found = self._weigh(episode, [each.pose for each in promising], expected)
-        winner = self._clear_winner(found, expected, path_m)
-        if winner is None or expected is not None:
-            return winner
+        found = self._weigh(episode, [each.pose for each in promising])
+        here = None
+        if followed is not None:
+            looks = looks_of(followed, _SCANS_WEIGHED, newest=len(episode))
+            (here,) = self._found([followed.poses[-1]], looks)
+        winner = self._clear_winner(found, here, path_m)
+        won, self._won = self._won, None if winner is None else winner.pose
+        if winner is None:
+            return None
+        if here is not None:
+            if same_place(winner.pose, here.pose):
+                return winner
+            if won is None or not same_place(winner.pose, won):
+                return None
         return self._sharpened(winner, episode)
 
-    def reconsider(self, episode: Episode, expected: Poses) -> Found | None:
-        """An open place that is clearly better than the one found; None if none is."""
-        if not len(self._open):
-            return None
-        found = self._weigh(episode, [], expected)
-        best = max(found, key=lambda each: each.score)
-        here = next(each for each in found if each.pose is expected)
-        better = best.score - here.score > _LEAST_DOUBT * self._parameters.recovery_lead
-        return best if better and self._explains(best) else None
-
-    def _climbers(self, episode: Episode, points: Floats, region: Region) -> list[Poses]:
-        """The places of a region's lattice that look right, each where the points fit best."""
+    def _climbers(self, episode: Episode, points: Floats) -> list[Poses]:
+        """The places of the lattice that look right, each where the points fit best."""
         (newest,) = looks_of(episode, 1, _BEAMS_GLANCED)
-        candidates = self._search.candidates(points, region, _CANDIDATES)
+        candidates = self._search.candidates(points, self._everywhere, _CANDIDATES)
         merits = np.array([glance(self._visible, newest, each) for each in candidates])
         best = np.argsort(-merits, kind="stable")[:_CLIMBERS]
         looks = looks_of(episode, 1)
@@ -175,14 +150,13 @@ class Recovery:
             for index in best
         ]
 
-    def _weigh(self, episode: Episode, places: list[Poses], expected: Poses | None) -> list[Found]:
+    def _weigh(self, episode: Episode, places: list[Poses]) -> list[Found]:
         """Places new and still open, with what speaks for each; the best of them stay open."""
         few, looks = looks_of(episode, _SCANS_POLISHED), looks_of(episode, _SCANS_WEIGHED)
         polished = [
             polish(self._visible, few, place, self._parameters) for place in [*self._open, *places]
         ]
-        claims = [] if expected is None else [expected]
-        found = self._found([*claims, *self._possible(polished)], looks)
+        found = self._found(self._possible(polished), looks)
         self._open = np.array([each.pose for each in _in_the_running(found)]).reshape(-1, 3)
         return found
 
@@ -209,39 +183,31 @@ class Recovery:
         return [each for each in places if may_be_at(float(each[0]), float(each[1]))]
 
     def _found(self, places: list[Poses], looks: list[ScanLook]) -> list[Found]:
-        return [Found(place, weigh(self._visible, self._field, looks, place)) for place in places]
+        anywhere = float(
+            np.mean([self._anywhere.log_likelihood(each.ranges_m, each.bearings) for each in looks])
+        )
+        return [
+            Found(
+                place, log_likelihood(self._visible, looks, place, self._anywhere.model) - anywhere
+            )
+            for place in places
+        ]
 
     def _clear_winner(
-        self, found: list[Found], expected: Poses | None, path_m: float
+        self, found: list[Found], followed: Found | None, path_m: float
     ) -> Found | None:
-        parameters = self._parameters
-
-        def worth(each: Found) -> float:
-            moves = expected is not None and not same_place(each.pose, expected)
-            return each.score - parameters.recovery_move_costs * moves
-
-        here = next((each for each in found if each.pose is expected), None)
-        if here is not None:
-            # Walls may be gone, but no place is left for one that explains less.
-            found = [each for each in found if each.evidence.on_map >= here.evidence.on_map]
+        if followed is not None:
+            found = [followed, *found]
         if not found:
             return None
-        best = max(found, key=worth)
-        rivals = [worth(each) for each in found if not same_place(each.pose, best.pose)]
-        lead = worth(best) - max(rivals, default=-_BEHIND_COUNTS)
-        doubt = max(_LEAST_DOUBT, 1.0 - path_m / parameters.recovery_patience_m)
-        if self._last is not None and same_place(best.pose, self._last):
+        best = max(found, key=lambda each: each.score)
+        rivals = [each.score for each in found if not same_place(each.pose, best.pose)]
+        lead = best.score - max(rivals, default=0.0)
+        doubt = max(_LEAST_DOUBT, 1.0 - path_m / self._parameters.recovery_patience_m)
+        if followed is not None and same_place(best.pose, followed.pose):
             doubt = _LEAST_DOUBT
-        clear = lead >= doubt * parameters.recovery_lead
-        if expected is not None and not same_place(best.pose, expected):
-            clear = clear and best.score >= _LEAST_SCORE_ELSEWHERE
-        return best if clear and self._explains(best) else None
-
-    def _explains(self, found: Found) -> bool:
-        """Whether a place explains enough of what is seen to be believed at all."""
-        seen = found.evidence
-        enough = seen.on_map >= max(_LEAST_EXPLAINED * seen.returns, _LEAST_ON_MAP)
-        return enough and seen.lost <= self._parameters.found_below
+        clear = lead >= doubt * self._parameters.recovery_lead
+        return best if clear and best.score > self._parameters.found_above else None
 
 
 def _ranked(found: list[Found]) -> list[Found]:

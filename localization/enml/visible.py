@@ -21,6 +21,11 @@ class Visible:
         self._max_range_m = max_range_m
         self._tiles: dict[tuple[int, int, int], Floats] = {}
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether the map shows nothing at all."""
+        return not len(self._segments)
+
     def cast(self, sensor: Poses, bearings: Floats, reach_m: float) -> Floats:
         """The range along ascending bearings from a sensor's pose."""
         segments = self.segments_around(sensor, reach_m)

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mend.localization.beam_model import BeamModel, Beams
 from mend.localization.evaluation import LOST_M, LOST_RAD
-from mend.localization.judging.beam_model import BeamModel, Beams
 from mend.localization.judging.contest import Contest, Hypothesis
 from mend.localization.judging.memory import MakeLocalizer, Memory, Past
 from mend.localization.judging.stretches import Stretches

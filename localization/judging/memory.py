@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from mend.localization.beam_model import BeamModel, Beams
 from mend.localization.evaluation import is_off
-from mend.localization.judging.beam_model import BeamModel, Beams
 from mend.localization.judging.contest import MOST_PER_SCAN
 from mend.localization.judging.verdict import Moment
 from mend.localization.localizer import Localizer

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mend.localization.judging.beam_model import BeamModel
+from mend.localization.beam_model import BeamModel
 from mend.localization.judging.memory import Past
 from mend.localization.judging.verdict import Moment, Standing, Stretch
 

@@ -1,16 +1,15 @@
 """What speaks for and against a robot's place: what it sees through, and what the map explains."""
 
 import numpy as np
-import pytest
 
-from mend.localization.enml.change import changed, seen_through
-from mend.localization.enml.familiarity import seen_before
-from mend.localization.enml.lost import MapFit
+from mend.localization.enml.change import Strangeness, changed, recognized_points, seen_through
+from mend.localization.enml.episode import Episode
 from mend.localization.enml.motion_model import Travel
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import PoseNode
+from mend.localization.enml.prior import whitening_of
 from mend.localization.points import scan_points
-from mend.localization.pose import Poses
+from mend.localization.pose import Poses, relative
 from mend.localization.scan import Scan
 from mend.maps.ray_cast import cast
 
@@ -57,9 +56,9 @@ def test_only_what_both_looked_at_is_compared() -> None:
 
 def test_what_was_seen_before_is_recognized_after_driving_on() -> None:
     on = np.array([0.3, 0.1, 0.2])
-    recognized = seen_before(seen(ROOM, HERE), seen(ROOM, on), on, EnmlParameters())
+    recognized = recognized_points(seen(ROOM, HERE), seen(ROOM, on), on, EnmlParameters())
     assert recognized.mean() > 0.8
-    elsewhere = seen_before(seen(ROOM, HERE), seen(HALL, on), on, EnmlParameters())
+    elsewhere = recognized_points(seen(ROOM, HERE), seen(HALL, on), on, EnmlParameters())
     assert elsewhere.mean() < 0.05
 
 
@@ -69,7 +68,7 @@ def test_what_faces_another_way_is_not_recognized() -> None:
     away_m, _ = before.tree.query(now.scan_points.points)
     near = away_m < EnmlParameters().stf_gate_m
     assert near.any()
-    assert not seen_before(before, now, HERE, EnmlParameters())[near].any()
+    assert not recognized_points(before, now, HERE, EnmlParameters())[near].any()
 
 
 def test_nothing_seen_is_nothing_changed() -> None:
@@ -78,17 +77,46 @@ def test_nothing_seen_is_nothing_changed() -> None:
     assert changed(seen(ROOM, HERE), HERE, seen(ROOM, nowhere), HERE) == 0.0
 
 
-@pytest.mark.parametrize("before", [0.0, 50.0, 500.0])
-def test_what_the_map_does_not_show_contradicts_no_place(before: float) -> None:
-    assert MapFit(on_map=50.0, before=before).contradiction == 0.0
+def episode_of(*way: tuple[np.ndarray, Poses]) -> Episode:
+    """Of what is seen in worlds, at poses that are told rightly."""
+    parameters = EnmlParameters()
+    episode = Episode(parameters, way[0][1], whitening_of(np.eye(3)))
+    for index, (world, pose) in enumerate(way):
+        angles = np.linspace(-2.0, 2.0, 121)
+        ranges, _ = cast(world, float(pose[0]), float(pose[1]), pose[2] + angles, 20.0)
+        scan = Scan(ranges, -2.0, float(angles[1] - angles[0]), 20.0, float(index))
+        motion = relative(way[index - 1][1], pose) if index else HERE
+        episode.extend(motion, scan, scan_points(scan))
+    return episode
 
 
-def test_returns_from_behind_walls_contradict_a_place() -> None:
-    few, many = (MapFit(on_map=50.0, behind=behind, before=50.0) for behind in (2.0, 30.0))
-    assert few.contradiction < 0.1
-    assert many.contradiction > 0.75
+def test_what_is_seen_again_speaks_against_having_been_carried() -> None:
+    on = np.array([0.4, 0.1, 0.1])
+    episode = episode_of((ROOM, HERE), (ROOM, on))
+    most = EnmlParameters().scan_tells_at_most
+    assert -most <= Strangeness(EnmlParameters()).weigh(episode, np.inf) < 0.0
 
 
-def test_no_return_neither_speaks_for_nor_against() -> None:
-    assert MapFit().contradiction == 0.0
-    assert MapFit().lost == 1.0
+def test_what_is_strange_is_so_until_the_last_familiar_scan_is_too_far_back() -> None:
+    strangeness = Strangeness(EnmlParameters())
+    on = [np.array([0.4 * step, 0.0, 0.0]) for step in range(6)]
+    seen_so_far = [(ROOM, on[0])]
+    told = []
+    for pose in on[1:]:
+        seen_so_far.append((HALL, pose))
+        told.append(strangeness.weigh(episode_of(*seen_so_far), np.inf))
+    assert min(told[:2]) > 5.0
+    assert told[-1] < 0.0
+
+
+def test_of_scans_that_are_too_far_apart_nothing_is_said() -> None:
+    episode = episode_of((ROOM, HERE), (HALL, np.array([0.5, 0.0, 0.0])))
+    assert Strangeness(EnmlParameters()).weigh(episode, 0.3) == 0.0
+    assert Strangeness(EnmlParameters()).weigh(episode, 0.6) > 0.0
+
+
+def test_nothing_seen_is_neither_strange_nor_familiar() -> None:
+    nowhere = np.array([[500.0, 500.0, 501.0, 500.0]])
+    for worlds in ((nowhere, ROOM), (ROOM, nowhere)):
+        episode = episode_of(*((world, HERE) for world in worlds))
+        assert Strangeness(EnmlParameters()).weigh(episode, np.inf) == 0.0

@@ -198,16 +198,11 @@ def shelves(x0: float, depth: float) -> list[list[float]]:
 
 
 @pytest.mark.parametrize("put_m", sample([2.1], [2.1, 2.9]))
-@pytest.mark.parametrize(("strange_above", "says_so"), [(0.99, False), (0.3, True)])
 def test_in_the_copy_of_a_hall_a_robot_notices_by_the_furniture_that_it_was_carried(
-    strange_above: float, says_so: bool, put_m: float
+    put_m: float,
 ) -> None:
     halls = [*box(0, 0, 20, 3), *box(40, 0, 60, 3)]
-    localizer = EnmlLocalizer(
-        VectorMap.of(halls),
-        start=np.array([4.0, 1.5, 0.0]),
-        parameters=EnmlParameters(strange_above=strange_above),
-    )
+    localizer = EnmlLocalizer(VectorMap.of(halls), start=np.array([4.0, 1.5, 0.0]))
     world = np.array([*halls, *shelves(0.0, 0.22), *shelves(40.0, 0.42)])
     here = np.column_stack([np.arange(4.0, 8.0, 0.1), np.full(40, 1.5), np.zeros(40)])
     there = here + np.array([40.0 + put_m, 0.0, 0.0])
@@ -217,29 +212,21 @@ def test_in_the_copy_of_a_hall_a_robot_notices_by_the_furniture_that_it_was_carr
         for index, (motion, scan) in enumerate(drive(there, 9, world))
     ]
     assert not any(before)
-    assert any(after[:2]) == any(after) == says_so
+    assert any(after[:4])
 
 
-@pytest.mark.parametrize(("confirmed_below", "says_so"), [(0.001, True), (0.3, False)])
-def test_beside_a_wall_that_is_gone_a_robot_that_is_found_again_is_not_lost(
-    confirmed_below: float, says_so: bool
-) -> None:
+def test_beside_a_wall_that_is_gone_a_robot_is_followed_and_not_lost() -> None:
     niche = [[6, 0, 6, -2], [7.4, 0, 7.4, -2], [6, -2, 7.4, -2]]
     rest = [
         [0, 0, 6, 0], [7.4, 0, 16, 0], [16, 0, 16, 6], [16, 6, 0, 6], [0, 6, 0, 0],
         [3, 6, 3, 4], *box(1, 4.8, 2, 5.4), [10, 6, 10, 4.5], *box(12, 4.9, 13.5, 5.5),
     ]  # fmt: skip
     along = np.column_stack([np.arange(1.5, 10.0, 0.1), np.full(85, 0.7), np.zeros(85)])
-    localizer = EnmlLocalizer(
-        VectorMap.of([*rest, [6, 0, 7.4, 0]]),
-        start=along[0],
-        parameters=EnmlParameters(confirmed_below=confirmed_below),
-    )
+    localizer = EnmlLocalizer(VectorMap.of([*rest, [6, 0, 7.4, 0]]), start=along[0])
     seen = drive(along, world=np.array([*rest, *niche], dtype=np.float64))
     estimates = [localizer.update(motion, scan) for motion, scan in seen]
     assert max(off(*each)[0] for each in zip(estimates, along, strict=True)) < 0.05
-    assert max(each.lost for each in estimates) > EnmlParameters().doubt_above
-    assert any(each.is_lost for each in estimates[20:]) == says_so
+    assert not any(each.is_lost for each in estimates)
 
 
 @pytest.mark.slow
@@ -266,7 +253,7 @@ def test_scans_that_show_nothing_leave_odometry_and_raise_the_measure(ranges: np
     for _ in range(4):
         expected = compose(expected, motion)
     np.testing.assert_allclose(estimate.pose, expected, atol=1e-6)
-    assert estimate.lost > 0.9
+    assert estimate.lost > 0.5
     assert len(estimate.classes) == 0
     assert np.isfinite(estimate.covariance).all()
 
@@ -338,22 +325,28 @@ def test_what_cannot_follow_is_refused_and_changes_nothing() -> None:
         np.testing.assert_array_equal(fresh.update(*step).pose, bothered.update(*step).pose)
 
 
-@pytest.mark.parametrize(
-    ("vector_map", "start"),
-    [(VectorMap.of([]), way(2)[0]), (FLOOR, OUTSIDE)],
-    ids=["an empty map", "a pose outside the map"],
-)
-def test_where_the_map_says_nothing_the_measure_is_high_and_the_robot_does_not_jump(
-    vector_map: VectorMap, start: Poses
-) -> None:
+def test_on_an_empty_map_a_robot_is_lost_and_does_not_jump() -> None:
     poses = way(8)
-    localizer = EnmlLocalizer(vector_map, start=start)
+    localizer = EnmlLocalizer(VectorMap.of([]), start=poses[0])
     for step in drive(poses):
         estimate = localizer.update(*step)
-        assert estimate.lost > 0.9
-    np.testing.assert_allclose(
-        relative(start, estimate.pose), relative(poses[0], poses[-1]), atol=0.1
-    )
+        assert estimate.is_lost
+        assert estimate.lost == 1.0
+    np.testing.assert_allclose(estimate.pose, poses[-1], atol=0.1)
+
+
+@pytest.mark.slow
+def test_a_robot_that_is_believed_outside_of_the_map_says_so_and_is_found() -> None:
+    poses = way(60)
+    localizer = EnmlLocalizer(FLOOR, start=OUTSIDE)
+    estimates = [localizer.update(*step) for step in drive(poses)]
+    silent = [
+        off(estimate, pose)[0] > 1.0 and not estimate.is_lost
+        for estimate, pose in zip(estimates, poses, strict=True)
+    ]
+    assert sum(silent) < 15
+    assert not estimates[-1].is_lost
+    assert off(estimates[-1], poses[-1])[0] < 0.1
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mend.errors import WrongInputError
-from mend.localization.judging.beam_model import BeamModel
+from mend.localization.beam_model import BeamModel
 from mend.localization.judging.contest import MOST_PER_SCAN, Contest, Hypothesis
 from mend.localization.judging.drive import judge_drive
 from mend.localization.judging.verdict import Judgement, Standing

@@ -47,6 +47,25 @@ class Beams:
     mount: Poses
 
 
+def log_densities(ranges: Matrix, expected: Matrix, parameters: BeamModelParameters) -> Matrix:
+    """Of ranges, where the map's first wall is expected at others (metres, alike in shape)."""
+    its = parameters
+    deviation = (ranges - expected) / its.hit_deviation_m
+    density = (
+        its.hit_share * np.exp(-0.5 * deviation**2) / (its.hit_deviation_m * np.sqrt(2.0 * np.pi))
+    )
+    decay = its.short_decay_per_m
+    before = its.short_share * decay * np.exp(-decay * ranges)
+    before = before / np.maximum(1.0 - np.exp(-decay * expected), 1e-6)
+    density = density + np.where(ranges < expected, before, 0.0)
+    return np.asarray(np.log(density + its.random_share / its.max_range_m))
+
+
+def spread(count: int, most: int) -> NDArray[np.int64]:
+    """At most so many of `count` beams, evenly spread: neighbours say nearly the same."""
+    return np.linspace(0, count - 1, min(most, count)).round().astype(np.int64)
+
+
 class BeamModel:
     """Log-likelihoods of scans at poses on one map."""
 
@@ -60,27 +79,16 @@ class BeamModel:
         """The returns that are used of a scan."""
         its = self._parameters
         returned = np.flatnonzero(scan.returns(0.0, its.max_range_m))
-        chosen = np.linspace(0, len(returned) - 1, min(its.beams, len(returned)))
-        used = returned[chosen.round().astype(np.int64)]
+        used = returned[spread(len(returned), its.beams)]
         bearings = scan.angles[used] + scan.sensor_offset[2]
         return Beams(scan.ranges[used], bearings, scan.sensor_offset)
 
     def log_likelihood(self, pose: Poses, beams: Beams) -> float:
         """Of a scan at one pose, tempered by the trust in a scan."""
-        its = self._parameters
         expected = self._expected(pose, beams)
-        deviation = (beams.ranges - expected) / its.hit_deviation_m
-        density = (
-            its.hit_share
-            * np.exp(-0.5 * deviation**2)
-            / (its.hit_deviation_m * np.sqrt(2.0 * np.pi))
+        return self._parameters.trust * float(
+            log_densities(beams.ranges, expected, self._parameters).sum()
         )
-        decay = its.short_decay_per_m
-        before = its.short_share * decay * np.exp(-decay * beams.ranges)
-        before /= np.maximum(1.0 - np.exp(-decay * expected), 1e-6)
-        density += np.where(beams.ranges < expected, before, 0.0)
-        density += its.random_share / its.max_range_m
-        return its.trust * float(np.log(density).sum())
 
     def matched_share(self, pose: Poses, beams: Beams) -> float:
         """The share of the returns that the map foretells from a pose; 0 where there is none."""
