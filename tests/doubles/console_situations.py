@@ -477,6 +477,10 @@ async def recorded_cameras(service: Service, open_page: OpenPage) -> Page:
         await scene.click()
     await cameras.get_by_role("button", name="Record").click()
     await expect(cameras.get_by_role("button", name="Recording …")).to_be_visible()
+    # Pressing it has scrolled a small window, to where a row may stick out from under a bar.
+    await page.evaluate(
+        "for (const each of document.querySelectorAll('*')) if (each.scrollTop) each.scrollTop = 0"
+    )
     return page
 
 
