@@ -26,7 +26,7 @@ export function Cameras({ run, moment, status }: Props) {
   return (
     <section class="panel cameras" aria-labelledby="cameras-title">
       <h2 id="cameras-title">Cameras</h2>
-      {goesOn && <RecordButton run={run} />}
+      {goesOn && <RecordButton key={run} run={run} />}
       <div class="cameras-both">
         {CAMERAS.map(([camera, title]) => (
           <figure key={camera} class="camera">

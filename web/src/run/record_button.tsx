@@ -14,7 +14,7 @@ export function RecordButton({ run }: { run: string }) {
     if (!recording) return;
     const timer = window.setTimeout(() => {
       setRecording(false);
-      setNote("Recorded. The replay has it.");
+      setNote("The time is over. What the cameras gave is in the replay.");
     }, seconds * 1000);
     return () => window.clearTimeout(timer);
   }, [recording]);
