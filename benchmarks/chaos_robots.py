@@ -45,6 +45,9 @@ class RobotKeeper:
                 await asyncio.sleep(0.1)
         finally:
             self.kill()
+            if self._process is not None:
+                # Else its end is heard of by nobody, and what is unclosed fails a later test.
+                await self._process.wait()
 
     def kill(self) -> None:
         self._signal(signal.SIGKILL)

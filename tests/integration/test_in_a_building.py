@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 import pytest
+from sampled import sample
 
 from mend.maps.building.building import Building
 from mend.maps.building.random_building import random_building
@@ -88,7 +89,8 @@ async def test_the_published_plan_asks_rides_notices_the_wrong_floor_and_arrives
 
 @pytest.mark.slow
 async def test_a_robot_that_is_carried_asks_where_it_is_and_goes_on(tmp_path: Path) -> None:
-    scene, tree = ("office", office(1)), rounds(1, 2, 3, 4, 5, 6)
+    # Wherever it is carried it looks for its place on the whole floor, which takes seconds.
+    scene, tree = ("office", office(1)), rounds(*sample((1, 2), (1, 2, 3, 4, 5, 6)))
     events = await run_to_its_end(
         tmp_path, scene, tree, 3, shut_doors=0.0, unmapped=0.33, carried_every_s=12.0
     )
