@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mend.maps.building.building import Building, Floor
-from mend.maps.building.clearance import apart_m, clearance_m, distances_m
+from mend.maps.building.clearance import apart_m, distances_m, is_clear
 
 Matrix = NDArray[np.float64]
 Point = tuple[float, float]
@@ -53,7 +53,7 @@ def waiting_points(floor: Floor, stop: Point, needs_m: float) -> Sequence[Point]
         for away_m in _WAITS_M
         for turn in np.arange(_DIRECTIONS) * math.tau / _DIRECTIONS
     ]
-    free = [each for each in candidates if clearance_m(each, stop, floor.wall_segments) >= needs_m]
+    free = [each for each in candidates if is_clear(each, stop, floor.wall_segments, needs_m)]
     if not free:
         return ()
     beside = distances_m(np.array(free), lanes) >= _BESIDE_LANES_M
@@ -91,7 +91,7 @@ def _leads_past(floor: Floor, at: Point, stop: Point, lane: Matrix, needs_m: flo
     """Whether a straight way leads from somewhere on a lane to a point, past the cabin."""
     ways = np.hstack([lane, np.broadcast_to(at, lane.shape)])
     past = lane[apart_m(np.array([stop]), ways)[0] >= CABIN_M + needs_m]
-    return any(clearance_m((x, y), at, floor.wall_segments) >= needs_m for x, y in past.tolist())
+    return any(is_clear((x, y), at, floor.wall_segments, needs_m) for x, y in past.tolist())
 
 
 def stop_of(building: Building, elevator: str, floor: str) -> Point:

@@ -9,6 +9,7 @@ Matrix = NDArray[np.float64]
 Point = tuple[float, float]
 
 _STEP_M = 0.05
+_ROUNDING_M = 1e-9
 
 
 def distances_m(points: Matrix, segments: Matrix) -> Matrix:
@@ -35,6 +36,17 @@ def clearance_m(start: Point, end: Point, segments: Matrix) -> float:
     steps = max(2, int(np.hypot(*(b - a)) / _STEP_M) + 1)
     points = a + np.linspace(0.0, 1.0, steps)[:, None] * (b - a)
     return float(distances_m(points, segments).min())
+
+
+def is_clear(start: Point, end: Point, segments: Matrix, needs_m: float) -> bool:
+    """Whether all segments (m, 4) keep `needs_m` from a straight way."""
+    x0, y0, x1, y1 = segments.T
+    reach_m = needs_m + _ROUNDING_M
+    beside = np.minimum(x0, x1) > max(start[0], end[0]) + reach_m
+    beside |= np.maximum(x0, x1) < min(start[0], end[0]) - reach_m
+    beside |= np.minimum(y0, y1) > max(start[1], end[1]) + reach_m
+    beside |= np.maximum(y0, y1) < min(start[1], end[1]) - reach_m
+    return clearance_m(start, end, segments[~beside]) >= needs_m
 
 
 def lane_clearance_m(floor: Floor, lane: Lane) -> float:

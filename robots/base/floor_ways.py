@@ -15,7 +15,7 @@ from mend.maps.building.cabin import (
     stop_of,
     waiting_points,
 )
-from mend.maps.building.clearance import clearance_m
+from mend.maps.building.clearance import clearance_m, is_clear
 from mend.maps.building.crossing import crossed_by
 from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 from mend.robots.base.body import BasePose
@@ -239,7 +239,7 @@ class FloorWays:
         away_m, walls = math.dist(stop, wait), self._building.floors[floor].wall_segments
         off = _ASIDE_M * (wait[1] - stop[1]) / away_m, _ASIDE_M * (stop[0] - wait[0]) / away_m
         at, other = ((stop[0] + n * off[0], stop[1] + n * off[1]) for n in (1.0, -1.0))
-        if clearance_m(at, other, walls) < self._needs_m:
+        if not is_clear(at, other, walls, self._needs_m):
             return None
         return self._pose(floor, at, (at[0] + wait[0] - stop[0], at[1] + wait[1] - stop[1]))
 
@@ -316,7 +316,7 @@ class FloorWays:
     def _is_wide(self, floor: str, a: Point, b: Point) -> bool:
         """Whether the straight way is wide enough to leave the lanes for."""
         walls = self._building.floors[floor].wall_segments
-        if clearance_m(a, b, walls) < self._needs_m:
+        if not is_clear(a, b, walls, self._needs_m):
             return False
         around_m = CABIN_M + self._needs_m
         return not any(

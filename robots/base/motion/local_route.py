@@ -159,38 +159,40 @@ def _spread(weights: Any, points: Any, blocked_m: float, tight_m: float, kept: A
                         continue
                 weights[row, column] = 0
     _measure_distances(weights)
+    by_room = np.empty(_ROOMY + 1, np.uint8)
+    by_room[0] = 0
+    for away in range(1, _ROOMY + 1):
+        by_room[away] = _CLOSE - (_CLOSE - _FREE) * (away - _STRAIGHT) // (_ROOMY - _STRAIGHT)
     for row in range(side):
         for column in range(side):
-            away = weights[row, column]
-            if away != 0:
-                levels = (_CLOSE - _FREE) * (away - _STRAIGHT) // (_ROOMY - _STRAIGHT)
-                weights[row, column] = _CLOSE - levels
+            weights[row, column] = by_room[weights[row, column]]
 
 
 @compiled
 def _measure_distances(cells: Any) -> None:
     """The chamfer distance of each cell to the nearest that is 0 (Borgefors 1986)."""
     side = cells.shape[0]
-    for number in range(2):
-        ahead = 1 if number == 0 else -1
-        start = 0 if number == 0 else side - 1
-        for down in range(side):
-            row = start + ahead * down
-            before = row - ahead
-            for right in range(side):
-                column = start + ahead * right
-                least = cells[row, column]
-                if least == 0:
-                    continue
-                if column - ahead >= 0 and column - ahead < side:
-                    least = min(least, cells[row, column - ahead] + _STRAIGHT)
-                if before >= 0 and before < side:
-                    least = min(least, cells[before, column] + _STRAIGHT)
-                    if column > 0:
-                        least = min(least, cells[before, column - 1] + _DIAGONAL)
-                    if column < side - 1:
-                        least = min(least, cells[before, column + 1] + _DIAGONAL)
-                cells[row, column] = least
+    for row in range(side):
+        if row > 0:
+            _measure_from(cells[row], cells[row - 1])
+        for column in range(1, side):
+            cells[row, column] = min(cells[row, column], cells[row, column - 1] + _STRAIGHT)
+    for row in range(side - 1, -1, -1):
+        if row < side - 1:
+            _measure_from(cells[row], cells[row + 1])
+        for column in range(side - 2, -1, -1):
+            cells[row, column] = min(cells[row, column], cells[row, column + 1] + _STRAIGHT)
+
+
+@compiled
+def _measure_from(cells: Any, beside: Any) -> None:
+    """The distances in a row by those in the row beside it: cell by cell, whatever their order."""
+    last = cells.shape[0] - 1
+    cells[0] = min(cells[0], beside[0] + _STRAIGHT, beside[1] + _DIAGONAL)
+    for column in range(1, last):
+        diagonal = min(beside[column - 1], beside[column + 1]) + _DIAGONAL
+        cells[column] = min(cells[column], beside[column] + _STRAIGHT, diagonal)
+    cells[last] = min(cells[last], beside[last] + _STRAIGHT, beside[last - 1] + _DIAGONAL)
 
 
 @compiled

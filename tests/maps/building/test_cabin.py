@@ -8,7 +8,7 @@ import pytest
 
 from mend.maps.building.building import Building, Floor, FloorPlace, Lane
 from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of, waiting_points
-from mend.maps.building.clearance import clearance_m, distances_m
+from mend.maps.building.clearance import clearance_m, distances_m, is_clear
 from mend.maps.building.random_building import random_building
 
 NEEDS_M = 0.3
@@ -82,3 +82,16 @@ def test_the_walls_of_a_cabin_are_round_its_stop() -> None:
     walls = cabin_walls((3.0, -1.0))
     assert distances_m(np.array([[3.0, -1.0]]), walls)[0] == pytest.approx(CABIN_M)
     assert np.allclose(walls[:, 2:], np.roll(walls[:, :2], -1, axis=0))
+
+
+def test_a_way_is_clear_of_what_keeps_as_far_from_it_as_it_needs() -> None:
+    random = np.random.default_rng(5)
+    told = set()
+    for _ in range(100):
+        walls = random.uniform(-5.0, 5.0, (random.integers(0, 12), 4))
+        (x0, y0), (x1, y1) = random.uniform(-4.0, 4.0, (2, 2)).tolist()
+        needs_m = float(random.choice((0.3, clearance_m((x0, y0), (x1, y1), walls))))
+        clear = is_clear((x0, y0), (x1, y1), walls, needs_m)
+        assert clear == (clearance_m((x0, y0), (x1, y1), walls) >= needs_m)
+        told.add(clear)
+    assert told == {True, False}
