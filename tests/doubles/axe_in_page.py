@@ -18,7 +18,8 @@ async def load_axe(page: Page) -> None:
 async def violations(page: Page, only: Mapping[str, Any]) -> list[str]:
     """What axe finds against WCAG on a page as it is shown now."""
     found: list[dict[str, Any]] = await page.evaluate(
-        "async (only) => (await axe.run({runOnly: only})).violations", only
+        "async (only) => (await axe.run({runOnly: only, resultTypes: ['violations']})).violations",
+        only,
     )
     return [
         f"{each['id']}: {node['target']} {node['failureSummary']}"
