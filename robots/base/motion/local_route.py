@@ -134,38 +134,60 @@ def _prefer(weights: Any, marked: Any, of: int, parts: int) -> None:
 
 @compiled
 def _spread(weights: Any, points: Any, blocked_m: float, tight_m: float, kept: Any) -> None:
-    """Write how near each cell is to what is blocked, 0 where it is blocked itself.
+    """Write how near each cell is to what is blocked, 0 where it is blocked itself."""
+    weights[:] = _ROOMY
+    _block(weights, points, blocked_m, tight_m, kept)
+    _measure_distances(weights)
+    by_room = np.empty(_ROOMY + 1, np.uint8)
+    by_room[0] = 0
+    for away in range(1, _ROOMY + 1):
+        by_room[away] = _CLOSE - (_CLOSE - _FREE) * (away - _STRAIGHT) // (_ROOMY - _STRAIGHT)
+    for row in range(_SIDE):
+        for column in range(_SIDE):
+            weights[row, column] = by_room[weights[row, column]]
+
+
+@compiled
+def _block(weights: Any, points: Any, blocked_m: float, tight_m: float, kept: Any) -> None:
+    """Write 0 for each cell that is nearer than `blocked_m` to a point.
 
     Where the base is stays free: what is nearer already it may leave. Cells that are `kept` are
     blocked by what is nearer than `tight_m`.
     """
-    side = weights.shape[0]
-    middle = (side // 2) * CELL_M
-    weights[:] = _ROOMY
+    middle = (_SIDE // 2) * CELL_M
+    begins, ends = _kept_in_rows(kept)
     for number in range(points.shape[0]):
         x, y = points[number, 0], points[number, 1]
         needed = min(blocked_m * blocked_m, (x - middle) ** 2 + (y - middle) ** 2 - 1e-6)
         needed_m = math.sqrt(max(0.0, needed))
         low = max(0, math.ceil((y - needed_m) / CELL_M))
-        high = min(side - 1, math.floor((y + needed_m) / CELL_M))
+        high = min(_SIDE - 1, math.floor((y + needed_m) / CELL_M))
         for row in range(low, high + 1):
             half_m = math.sqrt(max(0.0, needed - (row * CELL_M - y) ** 2))
             first = max(0, math.ceil((x - half_m) / CELL_M))
-            last = min(side - 1, math.floor((x + half_m) / CELL_M))
+            last = min(_SIDE - 1, math.floor((x + half_m) / CELL_M))
+            if first > last:
+                continue
+            if last < begins[row] or first > ends[row]:
+                weights[row, first : last + 1] = 0
+                continue
             for column in range(first, last + 1):
                 if kept[row, column] != 0:
                     square = (column * CELL_M - x) ** 2 + (row * CELL_M - y) ** 2
                     if square >= tight_m * tight_m:
                         continue
                 weights[row, column] = 0
-    _measure_distances(weights)
-    by_room = np.empty(_ROOMY + 1, np.uint8)
-    by_room[0] = 0
-    for away in range(1, _ROOMY + 1):
-        by_room[away] = _CLOSE - (_CLOSE - _FREE) * (away - _STRAIGHT) // (_ROOMY - _STRAIGHT)
-    for row in range(side):
-        for column in range(side):
-            weights[row, column] = by_room[weights[row, column]]
+
+
+@compiled
+def _kept_in_rows(kept: Any) -> Any:
+    """The first and the last column of each row that is kept; of no column, _SIDE and -1."""
+    begins, ends = np.full(_SIDE, _SIDE), np.full(_SIDE, -1)
+    for row in range(_SIDE):
+        for column in range(_SIDE):
+            if kept[row, column] != 0:
+                begins[row], ends[row] = min(begins[row], column), column
+    return begins, ends
 
 
 @compiled
