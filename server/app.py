@@ -50,7 +50,8 @@ from mend.server.api.gate import Gate
 from mend.server.api.idempotency_key import take_keys
 from mend.server.api.openapi_links import add_links
 from mend.server.api.openapi_responses import document_answers
-from mend.server.api.problems import Problem, answer_errors_with_problems
+from mend.server.api.problem import Problem
+from mend.server.api.problems import answer_errors_with_problems
 from mend.server.api.repeats import Repeats
 from mend.server.api.services import ObservedJournal, Services, WorldList
 from mend.server.dialogues.attendance import Attendance

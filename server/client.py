@@ -5,7 +5,6 @@ import contextlib
 from collections.abc import AsyncIterator
 from uuid import UUID
 
-from mend.server.api.speech import SpeechView
 from mend.server.client_access import AccessCalls
 from mend.server.client_connection import HelperEndpoint
 from mend.server.client_dialogues import DialogueCalls
@@ -27,6 +26,7 @@ from mend.server.runtime.views import (
     RunView,
     Snapshot,
 )
+from mend.server.speech.views import SpeechView
 
 DEFAULT_URL = "http://127.0.0.1:8080"
 READY_PAUSE_S = 0.1

@@ -3,7 +3,7 @@
 from typing import Literal
 from urllib.parse import quote
 
-from mend.server.api.principals import CodeView, DeedsPage, PrincipalView, TokenView
+from mend.server.access.views import CodeView, DeedsPage, PrincipalView, TokenView
 from mend.server.client_wire import Wire
 
 

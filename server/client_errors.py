@@ -2,7 +2,7 @@
 
 from mend.errors import MendError
 from mend.server.api.helper_messages import Error
-from mend.server.api.problems import Problem
+from mend.server.api.problem import Problem
 
 
 class ClientError(MendError):

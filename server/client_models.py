@@ -2,8 +2,8 @@
 
 from urllib.parse import quote
 
-from mend.server.api.models import ModelView
 from mend.server.client_wire import Wire
+from mend.server.models.views import ModelView
 
 
 class ModelCalls(Wire):

@@ -5,7 +5,7 @@ from uuid import uuid4
 
 import httpx
 
-from mend.server.api.idempotency_key import HEADER
+from mend.server.api.idempotency_header import HEADER
 from mend.server.journal.trouble import Sleep
 
 PAUSES_S = (0.2, 0.5, 1.0, 2.0)

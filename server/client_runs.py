@@ -7,8 +7,8 @@ from uuid import UUID
 
 from pydantic import TypeAdapter
 
-from mend.server.api.issues import IssueSummary
-from mend.server.api.statistics import Statistics
+from mend.server.api.issue_summary import IssueSummary
+from mend.server.api.statistics_views import Statistics
 from mend.server.client_wire import Wire
 from mend.server.journal.events import (
     AnyEvent,

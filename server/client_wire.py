@@ -8,7 +8,7 @@ from typing import Any, Self, TypeVar
 import httpx
 from pydantic import TypeAdapter, ValidationError
 
-from mend.server.api.problems import Problem, problem
+from mend.server.api.problem import Problem, problem
 from mend.server.client_errors import RefusedError, UnreachableError
 from mend.server.client_retries import send_once
 from mend.server.journal.trouble import Sleep

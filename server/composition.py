@@ -12,7 +12,7 @@ from functools import partial
 from mend.dialogue.registry import load_scripts
 from mend.server.access.access import Access
 from mend.server.access.deed_log import DeedLog
-from mend.server.api.robot_socket import add_robot_route, robots_url
+from mend.server.api.robot_socket import add_robot_route
 from mend.server.app import build_access, create_app
 from mend.server.background import Endless
 from mend.server.believed_time import BelievedTime
@@ -34,6 +34,7 @@ from mend.server.push.push import Push
 from mend.server.push.subscriptions import PushSubscriptions
 from mend.server.refusals import Refusals
 from mend.server.retention import prune_regularly
+from mend.server.robots.address import robots_url
 from mend.server.robots.passes import OwnRobots
 from mend.server.robots.process import launch
 from mend.server.robots.registry import RobotRegistry

@@ -2,7 +2,8 @@
 
 from http import HTTPStatus
 
-from mend.server.api.problems import MEDIA_TYPE, problem, problem_text
+from mend.server.api.problem import problem
+from mend.server.api.problems import MEDIA_TYPE, problem_text
 from mend.server.api.safe_headers import SAFE_HEADERS
 
 

@@ -8,7 +8,7 @@ from pydantic.json_schema import models_json_schema
 
 from mend.robots.link import messages as link
 from mend.server.api import helper_messages, speech_messages
-from mend.server.api.problems import Problem
+from mend.server.api.problem import Problem
 from mend.server.app import described_app
 from mend.server.documents import DocumentCheck
 from mend.server.journal.events import AnyEvent

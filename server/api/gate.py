@@ -12,7 +12,8 @@ from mend.server.access.access import Access
 from mend.server.access.permissions import needed_for_request
 from mend.server.access.roles import Role
 from mend.server.api.body_sizes import LARGE_BODY_BYTES, IncomingBodies, most_bytes
-from mend.server.api.problems import forbidden, problem, problem_response
+from mend.server.api.problem import problem
+from mend.server.api.problems import forbidden, problem_response
 from mend.server.api.safe_headers import OVER_TLS, SAFE_HEADERS
 from mend.server.asking import NOBODY, asker
 from mend.server.limits import Limits

@@ -17,7 +17,8 @@ from mend.server.access.permissions import SOCKETS, needed_for_message
 from mend.server.access.principal import Caller
 from mend.server.api.helper_messages import Auth, Error, HelperMessage
 from mend.server.api.mistakes import validation_sentences
-from mend.server.api.problems import Problem, forbidden, problem, problem_response
+from mend.server.api.problem import Problem, problem
+from mend.server.api.problems import forbidden, problem_response
 from mend.server.api.services import HelperName, Services, services_of
 from mend.server.journal.events import Author
 from mend.server.pace import Pace

@@ -32,7 +32,8 @@ from mend.server.api.helper_messages import (
     TroubleMessage,
     client_message,
 )
-from mend.server.api.problems import count_refusal, problem, problem_of
+from mend.server.api.problem import problem
+from mend.server.api.problems import count_refusal, problem_of
 from mend.server.api.services import MAX_SEQ
 from mend.server.journal.events import NO_RUN
 from mend.server.journal.journal import JournalClosedError

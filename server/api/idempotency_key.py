@@ -5,9 +5,9 @@ from typing import Any
 
 from starlette.requests import HTTPConnection
 
+from mend.server.api.idempotency_header import HEADER
 from mend.server.api.problems import ProblemError, documented
 
-HEADER = "Idempotency-Key"
 REPLAYED = "Idempotency-Replayed"
 """Says with an answer that it is the first one again."""
 

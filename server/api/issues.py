@@ -1,46 +1,18 @@
 """Issues over REST: what robots noticed, found again by part, robot, tree and date."""
 
-from datetime import datetime
 from typing import Annotated
 from uuid import UUID
 
 from fastapi import APIRouter, Query
-from pydantic import BaseModel, ConfigDict
 
 from mend.dialogue.script import CloseReason
+from mend.server.api.issue_summary import IssueSummary
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
 from mend.server.api.services import MAX_SEQ, Limit, SearchedText, Since, Until, WithServices
 from mend.server.journal.issue_index import IndexedIssue, IssuePage
 
 router = APIRouter(prefix="/api/issues", tags=["issues"], route_class=RepeatableRoute)
-
-
-class IssueSummary(BaseModel):
-    """One line about an issue.
-
-    `seq` is that of the event that raised it, `time` on its run's clock. `outcome` says how its
-    dialogue ended, null while that goes on, or where none was opened.
-    """
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    seq: int
-    run: UUID
-    tree: str
-    world: str
-    issue: str
-    object: str | None
-    place: str | None
-    robot: str
-    name: str
-    node: str
-    step: int
-    time: float
-    raised: datetime
-    picture: UUID | None
-    dialogue: UUID | None
-    outcome: CloseReason | None
 
 
 Kinds = Annotated[

@@ -13,7 +13,8 @@ from mend.server.api.helper_connection import (
     HelperQuery,
     until_one_ends,
 )
-from mend.server.api.problems import problem, problem_of
+from mend.server.api.problem import problem
+from mend.server.api.problems import problem_of
 from mend.server.poses.feed import RunPoses
 from mend.server.poses.layout import Layout
 

@@ -17,7 +17,7 @@ from mend.server.api.services import Limit, Offset, Services, WithCaller, WithSe
 from mend.server.models.archive_names import URDF, kind_of
 from mend.server.models.own_model import OwnModel
 from mend.server.models.robot_models import own_address
-from mend.server.runtime.views import View
+from mend.server.models.views import ModelFileView, ModelView
 
 router = APIRouter(prefix="/api", tags=["models"], route_class=RepeatableRoute)
 
@@ -48,26 +48,6 @@ BODY: dict[str, Any] = {
         },
     }
 }
-
-
-class ModelFileView(View):
-    """A file of a model, unpacked."""
-
-    name: str
-    bytes: int
-
-
-class ModelView(View):
-    """A model: `urdf` is where its description is, null where its files are not installed.
-
-    `built_in` ones are those of worlds; `version` and `files` are told of uploaded ones.
-    """
-
-    name: str
-    built_in: bool
-    urdf: str | None
-    version: str | None = None
-    files: list[ModelFileView] = []
 
 
 @router.get("/models", operation_id="list_models", responses=documented(401, 403, 421, 422))

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, TypeVar
 from uuid import uuid4
 
 from fastapi import APIRouter, Path, Query
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from mend.server.access.changes import PrincipalsEditor
@@ -14,6 +14,7 @@ from mend.server.access.deeds import DEEDS, Deed, deed_of
 from mend.server.access.principals_file import PrincipalName, RobotName
 from mend.server.access.roles import Role
 from mend.server.access.tokens import LONGEST_DAYS
+from mend.server.access.views import CodeView, DeedsPage, PrincipalView, TokenView
 from mend.server.api.problems import ProblemError, documented
 from mend.server.api.repeatable import SecretRoute
 from mend.server.api.services import After, Limit, Services, WithCaller, WithServices
@@ -21,7 +22,6 @@ from mend.server.journal.events import Author
 from mend.server.journal.journal import JournalReadError, JournalWriteError
 from mend.server.journal.subscriptions import Record
 from mend.server.runtime.journaled_tree import read_without_tree
-from mend.server.runtime.views import View
 
 router = APIRouter(prefix="/api/access", tags=["access"], route_class=SecretRoute)
 
@@ -62,38 +62,6 @@ class NewEnrolment(Strict):
 
     robot: RobotName = Field(examples=["arm-1"])
     minutes: Annotated[float, Field(gt=0, le=7 * 24 * 60, allow_inf_nan=False)] = 15
-
-
-class PrincipalView(View):
-    """A principal; `valid` is false once its token has expired."""
-
-    name: str
-    role: Role
-    added: AwareDatetime
-    expires: AwareDatetime | None
-    valid: bool
-
-
-class TokenView(View):
-    """A new token, which is shown only this once."""
-
-    name: str
-    token: str
-
-
-class CodeView(View):
-    """A one-time code, which is shown only this once."""
-
-    robot: str
-    code: str
-
-
-class DeedsPage(View):
-    """Deeds in order. `seq`: up to which event was read; `more`: whether events follow it."""
-
-    deeds: list[Deed]
-    seq: int
-    more: bool
 
 
 @router.get("/principals", operation_id="list_principals", responses=documented(401, 403, 421))

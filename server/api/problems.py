@@ -5,11 +5,9 @@ import logging
 from collections.abc import Callable, Mapping
 from http import HTTPStatus
 from typing import Any, cast
-from uuid import UUID
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from pydantic import BaseModel, ConfigDict
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
@@ -27,6 +25,7 @@ from mend.server.access.deed_log import ToldLaterError
 from mend.server.access.principals_file import PrincipalsFileError
 from mend.server.access.roles import Role, with_article
 from mend.server.api.mistakes import MOST_TOLD, validation_sentences
+from mend.server.api.problem import Problem, problem
 from mend.server.api.safe_headers import SAFE_HEADERS
 from mend.server.api.services import services_of
 from mend.server.descriptors import NO_DESCRIPTOR
@@ -58,27 +57,6 @@ SOON = {"Retry-After": "1"}
 """What may be possible again after a second, where nothing more is known."""
 
 
-class Problem(BaseModel):
-    """Why a request was refused. `answered_by` on a lost race, `errors` one per mistake.
-
-    `not_connected`: the robots that are to come before it can be done. `why`: what
-    keeps a request from being met; `next_possible_s`: from when until when it could be.
-    """
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    type: str = "about:blank"
-    title: str
-    status: int
-    detail: str
-    answered_by: str | None = None
-    prompt: UUID | None = None
-    errors: list[str] | None = None
-    not_connected: list[str] | None = None
-    why: str | None = None
-    next_possible_s: list[float] | None = None
-
-
 class ProblemError(MendError):
     """A refusal that the API itself decides on; `limit` is the one that was reached, if any."""
 
@@ -94,10 +72,6 @@ class ProblemError(MendError):
         self.status = status
         self.headers = headers
         self.limit = limit
-
-
-def problem(status: int, detail: str, **more: Any) -> Problem:
-    return Problem(title=HTTPStatus(status).phrase, status=status, detail=detail, **more)
 
 
 def forbidden(needed: Role, role: Role) -> Problem:

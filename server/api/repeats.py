@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from mend.server.api.idempotency_key import HEADER
+from mend.server.api.idempotency_header import HEADER
 from mend.server.api.problems import ProblemError
 from mend.server.journal.journal import (
     Journal,

@@ -13,12 +13,12 @@ from mend.robots.link.channel import ChannelClosedError
 from mend.robots.link.messages import LinkError
 from mend.server.access.access import Access
 from mend.server.access.principal import Caller
-from mend.server.api.problems import problem, problem_response
+from mend.server.api.problem import problem
+from mend.server.api.problems import problem_response
+from mend.server.robots.address import ROBOT_PATH
 from mend.server.robots.passes import Pass
 from mend.server.robots.registry import RobotRegistry
 from mend.server.robots.session import LAST_WORD_S
-
-ROBOT_PATH = "/ws/robot"
 
 DEAF = "nothing more of it is listened to"
 REVOKED = "this credential is good no longer: enrol the robot again"
@@ -80,11 +80,6 @@ class StarletteChannel:
                 await self._websocket.close(CLOSED_NORMALLY)
             except (WebSocketDisconnect, RuntimeError) as error:
                 raise ChannelClosedError(str(error)) from error
-
-
-def robots_url(url: str) -> str:
-    """Where the robots of the service at an address connect."""
-    return f"ws{url.removeprefix('http')}{ROBOT_PATH}"
 
 
 def add_robot_route(app: FastAPI, registry: RobotRegistry, access: Access) -> None:

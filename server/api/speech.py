@@ -4,16 +4,15 @@ from typing import Annotated, Any, Literal
 from uuid import UUID
 
 from fastapi import APIRouter, Path, Response
-from pydantic import BaseModel, ConfigDict
 
 from mend.documents.spellings import PHRASE
 from mend.errors import NotFoundError
 from mend.server.api.problems import ProblemError, documented
 from mend.server.api.services import DialogueId, Services, WithServices
-from mend.server.speech.commands import Command
 from mend.server.speech.ear import NoEars
 from mend.server.speech.phrases import FIXED, effect_text, help_text
 from mend.server.speech.question import find_prompt
+from mend.server.speech.views import Ability, SpeechView
 from mend.server.speech.vocabulary import PHRASES_OF, Vocabulary
 from mend.server.speech.voice import NoVoice, VoiceError
 
@@ -24,28 +23,6 @@ WAV: dict[int | str, dict[str, Any]] = {
     200: {"content": {"audio/wav": {}}, "description": "The sound."}
 }
 REFUSALS = documented(401, 404, 409, 421, 422)
-
-
-class Ability(BaseModel):
-    """Something that the service can do, or why it cannot."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    available: bool
-    engine: str | None = None
-    why_not: str | None = None
-
-
-class SpeechView(BaseModel):
-    """What the service can say and hear. `phrases`: what it says besides prompts, by name."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    language: Literal["en"] = "en"
-    voice: Ability
-    recognition: Ability
-    phrases: dict[str, str]
-    commands: dict[Command, list[str]]
 
 
 @router.get("/api/speech", operation_id="get_speech", responses=documented(401, 421))

@@ -9,7 +9,8 @@ from starlette.websockets import WebSocket
 from mend.errors import IllegalTransitionError, RefusalError
 from mend.server.api.helper_connection import HelperConnection, HelperQuery
 from mend.server.api.helper_messages import Auth
-from mend.server.api.problems import count_refusal, problem, problem_of
+from mend.server.api.problem import problem
+from mend.server.api.problems import count_refusal, problem_of
 from mend.server.api.speech_messages import (
     AnySpeechClientMessage,
     Cancel,

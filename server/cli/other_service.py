@@ -8,7 +8,6 @@ from typing import Literal
 from uuid import UUID
 
 from mend.errors import ConflictError
-from mend.server.api.robot_socket import robots_url
 from mend.server.cli.local_user import local_user
 from mend.server.cli.site_names import find_site
 from mend.server.client import MendClient
@@ -18,6 +17,7 @@ from mend.server.errors import NotConnectedError
 from mend.server.fixed_documents import GivenFiles
 from mend.server.journal import events as ev
 from mend.server.report.page import write_report
+from mend.server.robots.address import robots_url
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.views import RobotView, Snapshot
 

@@ -17,9 +17,9 @@ from websockets.asyncio.client import connect
 from mend.robots.link.channel import ChannelClosedError
 from mend.robots.link.pinned_tls import pinned_tls
 from mend.robots.link.websocket import websocket_channel
-from mend.server.api.robot_socket import ROBOT_PATH
 from mend.server.composition import Service, open_service
 from mend.server.limits import Limits
+from mend.server.robots.address import ROBOT_PATH
 from mend.server.runtime.requests import RunRequest
 from mend.server.settings import Settings, WrongSettingsError
 

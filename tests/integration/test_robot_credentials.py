@@ -24,10 +24,11 @@ from mend.robots.link.messages import Hello, LinkError, Welcome, service_message
 from mend.robots.link.websocket import websocket_channel
 from mend.server.access.access import Access
 from mend.server.access.roles import PEOPLE, Role
-from mend.server.api.robot_socket import ROBOT_PATH, add_robot_route
+from mend.server.api.robot_socket import add_robot_route
 from mend.server.composition import open_service
 from mend.server.journal import events as ev
 from mend.server.limits import Limits
+from mend.server.robots.address import ROBOT_PATH
 from mend.server.robots.passes import OwnRobots
 from mend.server.robots.registry import RobotRegistry
 from mend.server.robots.times import LinkTimes

@@ -1,4 +1,4 @@
-"""What the command line brings into a process that only says what there is."""
+"""What the command line brings into a process that says what there is, or asks a service."""
 
 import subprocess
 import sys
@@ -49,3 +49,12 @@ def test_nor_does_the_help_of_any_command() -> None:
     assert heavy <= {"pydantic"}
     assert "Add a principal" in told
     assert "Run a task tree in a simulated world" in told
+
+
+def test_a_client_imports_nothing_that_a_service_is_made_of() -> None:
+    program = "import sys, mend.server.cli.other_service\nprint(*sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    service = {"cryptography", "cv2", "fastapi", "numba", "scipy", "starlette", "uvicorn"}
+    assert service & set(done.stdout.split()) == set()

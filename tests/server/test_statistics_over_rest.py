@@ -7,7 +7,7 @@ import pytest
 from recorded_service import recorded_events
 from service_under_test import ServiceUnderTest, build
 
-from mend.server.api.statistics import Statistics
+from mend.server.api.statistics_views import Statistics
 from mend.server.journal.journal import Entry
 
 RECORDED = recorded_events()

@@ -1,0 +1,3 @@
+"""Where a client says under which key it sends something."""
+
+HEADER = "Idempotency-Key"
