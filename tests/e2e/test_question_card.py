@@ -4,9 +4,12 @@ import json
 
 import pytest
 from console_in_browser import COUNT_TONES, OpenPage, Stage
+from console_situations import STOLEN
 from playwright.async_api import expect
+from two_boxes import BENCH, BOTH
 
 from mend.server.composition import Service
+from mend.server.journal import events as ev
 from mend.server.runtime.requests import RunRequest
 from mend.tasks.intervention import Intervention
 
@@ -72,11 +75,17 @@ async def test_nobody_is_called_to_a_run_that_a_script_answers(
 ) -> None:
     page = await open_page()
     await page.evaluate(COUNT_TONES)
-    answers = ["silence"] * 9
-    request = RunRequest(tree="eket", world="tabletop", speed=5.0, answers=answers, max_attempts=1)
+    # Something is stolen, and the script never answers what is asked about it.
+    unanswered = {**STOLEN, "name": "unanswered", "answers": ["silence"] * 9}
+    await service.library.scenes.save("small_bench", BENCH)
+    await service.library.trees.save("both", BOTH)
+    await service.library.scenarios.save("unanswered", json.dumps(unanswered))
+    request = RunRequest(
+        tree="both", world="tabletop", speed="max", scenario="unanswered", seed=2, max_attempts=1
+    )
     run = await service.runtime.start_run(request)
-    steal = Intervention.model_validate({"act": "steal", "object": "green_leg"})
-    await service.runtime.intervene(run.id, steal)
     await expect(page.get_by_text("not all is well")).to_be_visible()
+    events = await service.journal.read(0, 10_000, run.id)
+    assert any(isinstance(each, ev.Prompt) and each.kind == "ask" for each in events)
     assert await page.title() == "Mend"
     assert await page.evaluate("window.tones") == 0
