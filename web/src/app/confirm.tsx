@@ -2,6 +2,7 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useId, useRef } from "preact/hooks";
 import "./confirm.css";
+import { t } from "../words/words";
 
 interface ConfirmProps {
   title: string;
@@ -15,7 +16,7 @@ interface ConfirmProps {
   onCancel: () => void;
 }
 
-export function Confirm({ title, children, confirm, cancel = "Cancel", harmless = false, onConfirm, onCancel }: ConfirmProps) {
+export function Confirm({ title, children, confirm, cancel = t("Cancel"), harmless = false, onConfirm, onCancel }: ConfirmProps) {
   const dialog = useRef<HTMLDialogElement>(null);
   const id = useId();
   useEffect(() => dialog.current?.showModal(), []);

@@ -1,6 +1,7 @@
 // How a call looks as a notification: the same whether it was pushed or the page itself shows it.
 import { robotName } from "../question/fault_words";
 import type { CallMessage, WithdrawnMessage } from "../wire/types";
+import { t } from "../words/words";
 
 /** What notifications can have beyond what TypeScript knows. */
 export interface NoticeOptions extends NotificationOptions {
@@ -22,7 +23,7 @@ const LOOKS = { icon: "/icons/192.png", badge: "/icons/badge.png" };
 export function callNotice(call: Omit<CallMessage, "type">, quiet: boolean): Notice {
   const robot = robotName(call.robot);
   return {
-    title: call.urgent ? `${robot} needs help now` : `${robot} asks for help`,
+    title: call.urgent ? t("{robot} needs help now", { robot }) : t("{robot} asks for help", { robot }),
     options: {
       ...LOOKS,
       body: call.text,
@@ -38,13 +39,13 @@ export function callNotice(call: Omit<CallMessage, "type">, quiet: boolean): Not
 }
 
 export function overNotice({ robot, text }: WithdrawnMessage): Notice {
-  const title = robot === "" ? "You are not needed now" : `${robotName(robot)}: you are not needed now`;
+  const title = robot === "" ? t("You are not needed now") : t("{robot}: you are not needed now", { robot: robotName(robot) });
   return { title, options: { ...LOOKS, body: text, tag: OVER, silent: true } };
 }
 
 export function trialNotice(): Notice {
   return {
-    title: "Mend can call this device",
-    options: { ...LOOKS, body: "A push has come all the way. This is how a robot's question looks.", tag: TRIAL },
+    title: t("Mend can call this device"),
+    options: { ...LOOKS, body: t("A push has come all the way. This is how a robot's question looks."), tag: TRIAL },
   };
 }

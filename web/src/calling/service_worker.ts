@@ -2,6 +2,7 @@
 // It answers no request and keeps no file, so that the console is never older than the service.
 import type { PushMessage, WithdrawnMessage } from "../wire/types";
 import { callNotice, type Notice, OVER, overNotice, trialNotice } from "./notices";
+import { addWords, type Words } from "../words/words";
 
 interface Waiting extends Event {
   waitUntil(work: Promise<unknown>): void;
@@ -19,6 +20,7 @@ interface Page {
   postMessage(message: unknown): void;
 }
 declare const self: EventTarget & {
+  location: Location;
   registration: ServiceWorkerRegistration;
   skipWaiting(): Promise<void>;
   clients: {
@@ -27,6 +29,11 @@ declare const self: EventTarget & {
     openWindow(address: string): Promise<unknown>;
   };
 };
+
+// Few enough to be here in every language: a worker loads nothing later.
+const NOTICES = import.meta.glob<Words>("../../texts/*/notices.json", { eager: true, import: "default" });
+const language = new URLSearchParams(self.location.search).get("language") ?? "en";
+addWords(NOTICES[`../../texts/${language}/notices.json`] ?? {});
 
 const pages = () => self.clients.matchAll({ type: "window", includeUncontrolled: true });
 const show = ({ title, options }: Notice) => self.registration.showNotification(title, options);

@@ -3,6 +3,7 @@ import { besideRobot, soundOn } from "../state/preferences";
 import { rings } from "./calls";
 import { soundBlocked, unlock } from "./sounds";
 import "./sound_bar.css";
+import { t } from "../words/words";
 
 export function SoundBar() {
   const matters = soundOn.value && soundBlocked.value && (besideRobot.value || rings.value.length > 0);
@@ -11,10 +12,10 @@ export function SoundBar() {
       {matters && (
         <>
           <p>
-            <strong>You do not hear this page yet.</strong> Browsers wait until it is touched once.
+            <strong>{t("You do not hear this page yet.")}</strong> {t("Browsers wait until it is touched once.")}
           </p>
           <button type="button" class="button" onClick={() => void unlock()}>
-            Turn the sound on
+            {t("Turn the sound on")}
           </button>
         </>
       )}

@@ -2,17 +2,18 @@
 import { useEffect, useState } from "preact/hooks";
 import { type Voice, voice } from "../state/preferences";
 import { browserVoices } from "../speech/browser_voice";
+import { t } from "../words/words";
 
 const VOICES: readonly (readonly [Voice, string])[] = [
-  ["service", "The service's voice"],
-  ["browser", "This browser's own voice"],
+  ["service", t("The service's voice")],
+  ["browser", t("This browser's own voice")],
 ];
 
 export function VoiceChoice() {
   const own = useOwnVoice();
   return (
     <fieldset class="panel setting-group">
-      <legend>Voice of the robots</legend>
+      <legend>{t("Voice of the robots")}</legend>
       <div class="choices">
         {VOICES.map(([value, text]) => (
           <label key={value} class="choice">
@@ -29,7 +30,7 @@ export function VoiceChoice() {
           </label>
         ))}
       </div>
-      {!own && <p class="small quiet">This browser has no voice of its own.</p>}
+      {!own && <p class="small quiet">{t("This browser has no voice of its own.")}</p>}
     </fieldset>
   );
 }

@@ -1,4 +1,5 @@
 // The browser's own recognizer of speech, where it has one that works on this device: what people say goes nowhere else.
+import { t } from "../words/words";
 
 const LANGUAGE = "en-US";
 const LOCAL = { langs: [LANGUAGE], processLocally: true };
@@ -36,7 +37,7 @@ export function hear(signal: AbortSignal): Promise<string> {
   return new Promise((resolve, reject) => {
     const here = recognitionHere();
     if (here === undefined) {
-      reject(new Error("This browser does not recognize speech."));
+      reject(new Error(t("This browser does not recognize speech.")));
       return;
     }
     const recognition = new here();
@@ -46,7 +47,7 @@ export function hear(signal: AbortSignal): Promise<string> {
     recognition.addEventListener("error", (event) => {
       const { error } = event as Event & { error?: string };
       if (error === "no-speech" || error === "aborted") resolve("");
-      else reject(new Error("The microphone cannot be used: type instead."));
+      else reject(new Error(t("The microphone cannot be used: type instead.")));
     });
     // After a result this changes nothing.
     recognition.addEventListener("end", () => resolve(""));

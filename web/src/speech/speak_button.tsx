@@ -1,6 +1,7 @@
 // A button to say something; it is there where the browser recognizes speech on this device.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { canHear, hear } from "./browser_ear";
+import { t } from "../words/words";
 
 interface SpeakButtonProps {
   label: string;
@@ -27,7 +28,7 @@ export function SpeakButton({ label, heard }: SpeakButtonProps) {
     try {
       const words = await hear(controller.signal);
       if (controller.signal.aborted) return;
-      if (words === "") setFailure("I have heard nothing: say it once more, or type it.");
+      if (words === "") setFailure(t("I have heard nothing: say it once more, or type it."));
       else heard(words);
     } catch (error) {
       setFailure(error instanceof Error ? error.message : String(error));
@@ -43,7 +44,7 @@ export function SpeakButton({ label, heard }: SpeakButtonProps) {
         aria-pressed={listening}
         onClick={() => (listening ? stop.current?.abort() : void listen())}
       >
-        {listening ? "Listening …" : label}
+        {listening ? t("Listening …") : label}
       </button>
       <p class="mistake small" role="alert">
         {failure}

@@ -15,6 +15,7 @@ import { type Microphone, openMicrophone } from "./microphone";
 import { connectSpeech, type SpeechSocket } from "./speech_socket";
 import { lastHeard, speechLacks, speechPhase } from "./speech_state";
 import { hush, say } from "./voice";
+import { t } from "../words/words";
 
 /** Switch it on; resolves with how to switch it off. */
 export async function beginToSpeak(): Promise<() => void> {
@@ -43,8 +44,8 @@ async function abilitiesAndMicrophone(): Promise<[Abilities, string | null, Open
     ({ voice, recognition }) => ({
       recognition: recognition.available,
       lacks: [
-        ...(voice.available ? [] : [`The service has no voice (${voice.why_not}): questions are shown.`]),
-        ...(recognition.available ? [] : [`It cannot listen (${recognition.why_not}): please use the buttons.`]),
+        ...(voice.available ? [] : [t("The service has no voice ({why_not}): questions are shown.", { why_not: voice.why_not ?? "" })]),
+        ...(recognition.available ? [] : [t("It cannot listen ({why_not}): please use the buttons.", { why_not: recognition.why_not ?? "" })]),
       ],
     }),
     (error: Error) => ({ recognition: false, lacks: [error.message] }),
@@ -56,7 +57,7 @@ async function abilitiesAndMicrophone(): Promise<[Abilities, string | null, Open
     return [abilities, null, Object.assign(held, microphone)];
   } catch (error) {
     const why = (error as Error).message;
-    return [abilities, `The microphone cannot be used (${why}): please use the buttons.`, null];
+    return [abilities, t("The microphone cannot be used ({why}): please use the buttons.", { why }), null];
   }
 }
 
@@ -212,8 +213,8 @@ class SpokenDialogue {
     else if (command === "yes" || command === "no") answer(question, command);
     if (command === "stop") {
       rest.pauseRun(question.run).then(
-        () => tellEnding(question, "You said stop: the run is paused."),
-        (error: Error) => tellEnding(question, `You said stop, but: ${error.message}`),
+        () => tellEnding(question, t("You said stop: the run is paused.")),
+        (error: Error) => tellEnding(question, t("You said stop, but: {message}", { message: error.message })),
       );
     }
   }

@@ -1,6 +1,7 @@
 // Says one text at a time: with the service's sound, or with the browser's own voice.
 import { voice } from "../state/preferences";
 import { sayInBrowser } from "./browser_voice";
+import { t } from "../words/words";
 
 let stop: AbortController | null = null;
 
@@ -10,7 +11,7 @@ export async function say(text: string, audio: string | null): Promise<void> {
   const mine = new AbortController();
   stop = mine;
   const inBrowser = () => sayInBrowser(text, mine.signal);
-  const fromService = () => (audio === null ? Promise.reject(new Error("no sound")) : play(audio, mine.signal));
+  const fromService = () => (audio === null ? Promise.reject(new Error(t("no sound"))) : play(audio, mine.signal));
   const [first, second] = voice.value === "browser" ? [inBrowser, fromService] : [fromService, inBrowser];
   // What cannot be said is shown: its text stands on the card in any case.
   await first()
@@ -28,7 +29,7 @@ function play(address: string, signal: AbortSignal): Promise<void> {
   const sound = new Audio(address);
   return new Promise((resolve, reject) => {
     sound.onended = () => resolve();
-    sound.onerror = () => reject(new Error("The sound cannot be played."));
+    sound.onerror = () => reject(new Error(t("The sound cannot be played.")));
     signal.addEventListener("abort", () => {
       sound.pause();
       resolve();
