@@ -80,10 +80,12 @@ async def test_every_page_is_german_and_has_room_for_it(
 ) -> None:
     page = await situation(service, open_page)
     await page.evaluate(f"() => localStorage.setItem('mend.language', {GERMAN})")
+    await page.set_viewport_size({"width": NARROW_PX, "height": TALL})
     await page.reload()
     await expect(page.locator("html")).to_have_attribute("lang", "de")
+    await expect(page.locator("main")).to_be_visible()
+    await expect(page.get_by_text("Wird geladen …")).to_have_count(0)
     await load_axe(page)
-    await page.set_viewport_size({"width": NARROW_PX, "height": TALL})
     await settle(page)
     assert await overlaps(page) == []
     assert await violations(page, RULES["light"]) == []

@@ -3,6 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import { type Voice, voice } from "../state/preferences";
 import { browserVoices } from "../speech/browser_voice";
 import { t } from "../words/words";
+import { language } from "../words/language";
 
 const VOICES: readonly (readonly [Voice, string])[] = [
   ["service", t("The service's voice")],
@@ -30,6 +31,11 @@ export function VoiceChoice() {
           </label>
         ))}
       </div>
+      {language !== "en" && (
+        <p class="small quiet">
+          {t("The service speaks English: where this browser has a voice of your language, that one speaks.")}
+        </p>
+      )}
       {!own && <p class="small quiet">{t("This browser has no voice of its own.")}</p>}
     </fieldset>
   );

@@ -2,18 +2,18 @@
 import { t } from "../words/words";
 import { language } from "../words/language";
 
-/** The voices that can say the page's language, without leaving this device where there is a choice. */
-export function browserVoices(): SpeechSynthesisVoice[] {
+/** The voices that can say a language, the page's unless told, without leaving this device where there is a choice. */
+export function browserVoices(spoken = language): SpeechSynthesisVoice[] {
   if (!("speechSynthesis" in window)) return [];
-  const able = speechSynthesis.getVoices().filter((each) => each.lang.startsWith(language));
+  const able = speechSynthesis.getVoices().filter((each) => each.lang.startsWith(spoken));
   const local = able.filter((each) => each.localService);
   return local.length > 0 ? local : able;
 }
 
 /** Say a text; resolves when it is said, rejects when it cannot be. */
-export function sayInBrowser(text: string, signal: AbortSignal): Promise<void> {
+export function sayInBrowser(text: string, signal: AbortSignal, spoken = language): Promise<void> {
   return new Promise((resolve, reject) => {
-    const [voice] = browserVoices();
+    const [voice] = browserVoices(spoken);
     if (voice === undefined) {
       reject(new Error(t("This browser has no voice.")));
       return;

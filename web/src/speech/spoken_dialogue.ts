@@ -16,6 +16,8 @@ import { connectSpeech, type SpeechSocket } from "./speech_socket";
 import { lastHeard, speechLacks, speechPhase } from "./speech_state";
 import { hush, say } from "./voice";
 import { t } from "../words/words";
+import { browserVoices } from "./browser_voice";
+import { language } from "../words/language";
 
 /** Switch it on; resolves with how to switch it off. */
 export async function beginToSpeak(): Promise<() => void> {
@@ -45,6 +47,9 @@ async function abilitiesAndMicrophone(): Promise<[Abilities, string | null, Open
       recognition: recognition.available,
       lacks: [
         ...(voice.available ? [] : [t("The service has no voice ({why_not}): questions are shown.", { why_not: voice.why_not ?? "" })]),
+        ...(!voice.available || language === "en" || browserVoices().length > 0
+          ? []
+          : [t("This browser has no voice of your language: the service speaks English.")]),
         ...(recognition.available ? [] : [t("It cannot listen ({why_not}): please use the buttons.", { why_not: recognition.why_not ?? "" })]),
       ],
     }),
