@@ -2,7 +2,7 @@
 import { helperName } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { connection } from "../state/service";
-import { type SpeechPhase, speechPhase } from "../speech/speech_state";
+import { listensTo, type SpeechPhase, speechPhase } from "../speech/speech_state";
 import { shown } from "./queue";
 import { maySayDone, mayTakeBack, onItsWay, say, wordMistakes } from "./promise";
 import { t } from "../words/words";
@@ -11,6 +11,11 @@ const SPOKEN: Partial<Record<SpeechPhase, string>> = {
   listening: t("Speak now: “done”, or “I can’t”"),
   hearing: t("Listening to you …"),
 };
+
+function spokenHint(): string | undefined {
+  if (speechPhase.value !== "listening" || listensTo.value === null) return SPOKEN[speechPhase.value];
+  return t("Speak now, in {language}: “{done}” or “{cannot}”", listensTo.value);
+}
 
 export function PromiseButtons({ question }: { question: Question }) {
   const { dialogue, help } = question;
@@ -37,7 +42,7 @@ export function PromiseButtons({ question }: { question: Question }) {
           (help.reported_by === helperName.value
             ? t("You said that it is done. The robot looks …")
             : t("{helper} said that it is done. The robot looks …", { helper: help.reported_by ?? "" }))}
-        {!looks && !offline && mistake === undefined && shown.value === null && SPOKEN[speechPhase.value]}
+        {!looks && !offline && mistake === undefined && shown.value === null && spokenHint()}
         {offline && t("No connection to the service. You can say so as soon as it is back.")}
         {mistake !== undefined && !looks && !offline && <span class="mistake">{mistake}</span>}
       </p>

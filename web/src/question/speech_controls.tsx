@@ -3,7 +3,7 @@ import { useState } from "preact/hooks";
 import { may } from "../state/access";
 import { keys, keysOn } from "../state/preferences";
 import type { Question } from "../state/questions";
-import { lastHeard, type SpeechPhase, speechLacks, speechPhase } from "../speech/speech_state";
+import { lastHeard, listensTo, type SpeechPhase, speechLacks, speechPhase } from "../speech/speech_state";
 import { switchOff, switchOn } from "../speech/speech_switch";
 import { repeat } from "./repeating";
 import "./speech_controls.css";
@@ -53,7 +53,9 @@ export function SpeechControls({ question, onAct }: { question: Question; onAct(
         {keysOn.value && keys.value.repeat !== "" && <kbd aria-hidden="true">{keys.value.repeat.toUpperCase()}</kbd>}
       </button>
       <p class={`speech-phase ${phase}`} role="status">
-        {PHASES[phase]}
+        {phase === "listening" && listensTo.value !== null
+          ? t("Speak now, in {language}: “{yes}” or “{no}”", listensTo.value)
+          : PHASES[phase]}
         {heard !== null && (
           <span class="heard">
             {heard.phrase === null ? t("That was no yes or no.") : t("Heard: “{phrase}”", { phrase: heard.phrase })}

@@ -3,8 +3,9 @@ import { useEffect, useRef, useState } from "preact/hooks";
 
 import { SpeakButton } from "../speech/speak_button";
 import { t } from "../words/words";
-import { language } from "../words/language";
+import { language, locale } from "../words/language";
 import { Told } from "../words/told";
+import { ENGLISH } from "../speech/browser_ear";
 
 // What was heard in German counts on a German page alone: an unclear word is never taken for one of another language.
 const SAID: Readonly<Record<string, { yes: readonly string[]; no: readonly string[] }>> = {
@@ -40,6 +41,7 @@ export function Confirming({ readBack, busy, yes, no }: ConfirmingProps) {
         <button class="button" type="button" disabled={busy} onClick={no}>{t("No")}</button>
         <SpeakButton
           label={t("Say yes or no")}
+          language={language === "en" ? ENGLISH : locale}
           heard={(words) => {
             const said = words.toLowerCase().replace(/[.,!?]/g, "").trim();
             if (YES.includes(said)) yes();

@@ -21,7 +21,7 @@ export function LanguageChoice() {
       </div>
       {language !== "en" && (
         <p class="small quiet">
-          {t("What is spoken is understood in English only: “yes”, “no”. What robots say in words of their own stays English too.")}
+          {t("What is spoken is understood in English only, unless whoever runs the service has set another model. What robots say in words of their own stays English too.")}
         </p>
       )}
     </fieldset>

@@ -10,20 +10,21 @@ import { tellEnding } from "../state/endings";
 import { helperName } from "../state/preferences";
 import { awaitingHelp, dialogueOf, type Question, together } from "../state/questions";
 import * as rest from "../wire/rest";
-import type { ToSpeaker } from "../wire/types";
+import type { SpeechView, ToSpeaker } from "../wire/types";
 import { type Microphone, openMicrophone } from "./microphone";
 import { connectSpeech, type SpeechSocket } from "./speech_socket";
-import { lastHeard, speechLacks, speechPhase } from "./speech_state";
+import { lastHeard, listensTo, speechLacks, speechPhase } from "./speech_state";
 import { hush, say } from "./voice";
 import { t } from "../words/words";
 import { browserVoices } from "./browser_voice";
-import { language } from "../words/language";
+import { language, nameOf } from "../words/language";
 
 /** Switch it on; resolves with how to switch it off. */
 export async function beginToSpeak(): Promise<() => void> {
   const [abilities, mistake, microphone] = await abilitiesAndMicrophone();
   const conversation = new SpokenDialogue(abilities.recognition && microphone !== null);
   if (microphone !== null) microphone.onFrame = (pcm) => conversation.hear(pcm);
+  listensTo.value = abilities.listensTo;
   speechLacks.value = [...abilities.lacks, ...(mistake === null ? [] : [mistake])].join(" ");
   return () => {
     conversation.end();
@@ -35,15 +36,23 @@ export async function beginToSpeak(): Promise<() => void> {
 }
 
 interface Abilities {
+  listensTo: typeof listensTo.value;
   recognition: boolean;
   lacks: string[];
+}
+
+function heardAs(spoken: string, commands: SpeechView["commands"]): Abilities["listensTo"] {
+  const phrase = (command: string) => commands[command]?.[0] ?? "";
+  const said = { yes: phrase("yes"), no: phrase("no"), done: phrase("done"), cannot: phrase("cannot") };
+  return { language: nameOf(spoken, language), ...said };
 }
 
 type OpenMicrophone = Microphone & { onFrame(pcm: ArrayBuffer): void };
 
 async function abilitiesAndMicrophone(): Promise<[Abilities, string | null, OpenMicrophone | null]> {
   const abilities = await rest.speech().then(
-    ({ voice, recognition }) => ({
+    ({ voice, recognition, language: heard, commands }) => ({
+      listensTo: heard === language ? null : heardAs(heard, commands),
       recognition: recognition.available,
       lacks: [
         ...(voice.available ? [] : [t("The service has no voice ({why_not}): questions are shown.", { why_not: voice.why_not ?? "" })]),
@@ -53,7 +62,7 @@ async function abilitiesAndMicrophone(): Promise<[Abilities, string | null, Open
         ...(recognition.available ? [] : [t("It cannot listen ({why_not}): please use the buttons.", { why_not: recognition.why_not ?? "" })]),
       ],
     }),
-    (error: Error) => ({ recognition: false, lacks: [error.message] }),
+    (error: Error) => ({ listensTo: null, recognition: false, lacks: [error.message] }),
   );
   if (!abilities.recognition) return [abilities, null, null];
   const held = { onFrame: (_: ArrayBuffer) => undefined as void };

@@ -17,9 +17,9 @@ export function languageOf(chosen: string, wished: readonly string[], known: rea
   return [chosen, ...wished.map(baseOf)].find((each) => known.includes(each)) ?? "en";
 }
 
-/** What a language is called by those who speak it. */
-export function nameOf(language: string): string {
-  return new Intl.DisplayNames([language], { type: "language" }).of(language) ?? language;
+/** What a language is called, by those who speak it unless told otherwise. */
+export function nameOf(language: string, by = language): string {
+  return new Intl.DisplayNames([by], { type: "language" }).of(language) ?? language;
 }
 
 function baseOf(tag: string): string {
