@@ -1,11 +1,10 @@
 """A browser that asks for German: the helper's way from the question to its end, and every page."""
 
-import json
 from pathlib import Path
 
 import pytest
 from console_in_browser import OpenPage, Stage, settle
-from console_situations import SITUATIONS, Situation, delete_tree, sign_in
+from console_situations import SITUATIONS, Situation, delete_tree, read_in_german, sign_in
 from played_dialogues import DETECTION
 from playwright.async_api import expect
 from test_accessibility import RULES, load_axe, violations
@@ -18,7 +17,6 @@ pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 ENGLISH_LEFT = (Path(__file__).parent / "english_left.js").read_text().strip()
 NARROW_PX = 360
-GERMAN = json.dumps(json.dumps("de"))
 
 # Names, what people have written, and what is understood in English alone.
 OWN_WORDS = (
@@ -79,10 +77,8 @@ async def test_every_page_is_german_and_has_room_for_it(
     service: Service, open_page: OpenPage, situation: Situation
 ) -> None:
     page = await situation(service, open_page)
-    await page.evaluate(f"() => localStorage.setItem('mend.language', {GERMAN})")
     await page.set_viewport_size({"width": NARROW_PX, "height": TALL})
-    await page.reload()
-    await expect(page.locator("html")).to_have_attribute("lang", "de")
+    await read_in_german(page)
     await expect(page.locator("main")).to_be_visible()
     await expect(page.get_by_text("Wird geladen …")).to_have_count(0)
     await load_axe(page)

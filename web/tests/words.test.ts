@@ -3,7 +3,7 @@ import { problems } from "../scripts/check_words.mjs";
 import sentences from "../texts/de/sentences.json";
 import clauses from "../texts/de/clauses.json";
 import { languageOf } from "../src/words/language";
-import { addSentences, learn, said, translated } from "../src/words/said";
+import { takeSentences, learn, said, translated } from "../src/words/said";
 import { parts, t, tn } from "../src/words/words";
 
 describe("the language of a page", () => {
@@ -35,8 +35,8 @@ describe("a text", () => {
 });
 
 describe("what the service says", () => {
-  beforeEach(() => addSentences(sentences, clauses));
-  afterEach(() => addSentences({}, {}));
+  beforeEach(() => takeSentences(sentences, clauses));
+  afterEach(() => takeSentences({}, {}));
 
   const missed = {
     text: "I missed the red leg. The red leg is nowhere in the head picture. Will you put it back on the table?",

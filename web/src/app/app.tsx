@@ -12,8 +12,8 @@ import { besideRobot, helperName, pushOn } from "../state/preferences";
 import { SoundBar } from "../calling/sound_bar";
 import { later } from "./later";
 import { type Route, route } from "./router";
-import "./app.css";
 import { t } from "../words/words";
+import "./app.css";
 
 const RunView = later(() => import("../run/run_view").then((module) => module.RunView));
 const RunsView = later(() => import("../run/runs_view").then((module) => module.RunsView));

@@ -1,8 +1,8 @@
 // A question before something that cannot be taken back.
 import type { ComponentChildren } from "preact";
 import { useEffect, useId, useRef } from "preact/hooks";
-import "./confirm.css";
 import { t } from "../words/words";
+import "./confirm.css";
 
 interface ConfirmProps {
   title: string;

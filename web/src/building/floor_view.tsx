@@ -10,8 +10,8 @@ import type { SeenRobot } from "./seen_robots";
 import { useSteady } from "./use_floor";
 import { useSight, useSize } from "./use_sight";
 import { ViewButtons } from "./view_buttons";
-import "./building.css";
 import { t } from "../words/words";
+import "./building.css";
 
 export function useFloorView(floor: PlanFloor) {
   const element = useRef<HTMLDivElement>(null);

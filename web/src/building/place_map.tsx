@@ -13,8 +13,8 @@ import { centred, drawnAt } from "./sight";
 import { createStandings, howLong, OLD_S, type Standing } from "./standing";
 import { useSize } from "./use_sight";
 import { floorShownAt, nearestPlace, whereInWords } from "./whereabouts";
-import "./building.css";
 import { parts, t } from "../words/words";
+import "./building.css";
 
 const LOOK_MS = 500;
 const LEAST_ACROSS_M = 12;

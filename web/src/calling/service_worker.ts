@@ -3,6 +3,7 @@
 import type { PushMessage, WithdrawnMessage } from "../wire/types";
 import { callNotice, type Notice, OVER, overNotice, trialNotice } from "./notices";
 import { addWords, type Words } from "../words/words";
+import { takeSentences } from "../words/said";
 
 interface Waiting extends Event {
   waitUntil(work: Promise<unknown>): void;
@@ -30,10 +31,12 @@ declare const self: EventTarget & {
   };
 };
 
-// Few enough to be here in every language: a worker loads nothing later.
-const NOTICES = import.meta.glob<Words>("../../texts/*/notices.json", { eager: true, import: "default" });
+// All languages are here: a worker loads nothing later.
+const TEXTS = import.meta.glob<Words>("../../texts/*/{notices,sentences,clauses}.json", { eager: true, import: "default" });
 const language = new URLSearchParams(self.location.search).get("language") ?? "en";
-addWords(NOTICES[`../../texts/${language}/notices.json`] ?? {});
+const textsIn = (file: string) => TEXTS[`../../texts/${language}/${file}.json`] ?? {};
+addWords(textsIn("notices"));
+takeSentences(textsIn("sentences"), textsIn("clauses"));
 
 const pages = () => self.clients.matchAll({ type: "window", includeUncontrolled: true });
 const show = ({ title, options }: Notice) => self.registration.showNotification(title, options);

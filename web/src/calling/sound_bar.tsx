@@ -2,8 +2,8 @@
 import { besideRobot, soundOn } from "../state/preferences";
 import { rings } from "./calls";
 import { soundBlocked, unlock } from "./sounds";
-import "./sound_bar.css";
 import { t } from "../words/words";
+import "./sound_bar.css";
 
 export function SoundBar() {
   const matters = soundOn.value && soundBlocked.value && (besideRobot.value || rings.value.length > 0);

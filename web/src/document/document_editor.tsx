@@ -13,8 +13,8 @@ import { SaveForm } from "./save_form";
 import { type Jump, TextEditor } from "./text_editor";
 import { useUnsaved } from "./unsaved";
 import { type EditedText, useText } from "./use_text";
-import "./document_editor.css";
 import { t } from "../words/words";
+import "./document_editor.css";
 
 /** What the drawing beside the text knows of it, and can do to it. */
 export interface Editing {

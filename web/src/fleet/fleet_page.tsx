@@ -26,8 +26,8 @@ import { RobotsList } from "./robots_list";
 import { usePastStandings } from "./use_past_standings";
 import { useSiteEvents } from "./use_site_events";
 import { WaysPanel } from "./ways_panel";
-import "./fleet.css";
 import { t, tn } from "../words/words";
+import "./fleet.css";
 
 const AGAIN_MS = 1_000;
 

@@ -67,5 +67,5 @@ export function sureInWords(covariance: readonly number[]): string {
 
 /** A time of the site's clock without tenths. */
 export function wholeClock(seconds: number): string {
-  return clock(Math.round(seconds)).replace(".0", "");
+  return clock(Math.round(seconds)).replace(/[.,]0(?= s$|$)/, "");
 }

@@ -10,8 +10,8 @@ import type { IssueSummary } from "../wire/types";
 import { momentOf, outcomeOf } from "./issue_words";
 import { useIssuesPage } from "./issues_page";
 import { pages, search, searchIssues } from "./issues_search";
-import "./issues.css";
 import { t } from "../words/words";
+import "./issues.css";
 
 export function IssuesView() {
   const query = useSettled(queryOf(search.value).toString());

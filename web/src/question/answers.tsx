@@ -6,10 +6,10 @@ import { AnsweringNote } from "./answering_note";
 import type { Arming } from "./arming";
 import { HeldBack } from "./held_back";
 import { takesAnswers } from "./takes_answers";
-import "./answers.css";
 import { t } from "../words/words";
 import { said } from "../words/said";
 import { Told } from "../words/told";
+import "./answers.css";
 
 interface AnswersProps {
   question: Question;

@@ -5,8 +5,8 @@ import { faultInWords, robotName } from "./fault_words";
 import { isPutOff, putOffCalls, rings } from "../calling/calls";
 import { shown } from "./queue";
 import { questions } from "../state/questions";
-import "./ask_bar.css";
 import { t } from "../words/words";
+import "./ask_bar.css";
 
 export function AskBar() {
   const question = shown.value;

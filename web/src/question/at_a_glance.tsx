@@ -10,8 +10,8 @@ import { plain, withoutRun } from "../tree/words";
 import * as rest from "../wire/rest";
 import type { Event, RobotView, RunSummary } from "../wire/types";
 import { glanceOf, type Sign } from "./glance";
-import "./at_a_glance.css";
 import { parts, t } from "../words/words";
+import "./at_a_glance.css";
 
 const SHOWN_AT_MOST = 5;
 const COMES_OR_GOES: ReadonlySet<Event["type"]> = new Set(["robot_lost", "robot_back", "run_started"]);

@@ -5,8 +5,8 @@ import type { Question } from "../state/questions";
 import { isPutOff, putOffCalls, takeCallsAgain } from "../calling/calls";
 import { claim, release } from "./claiming";
 import { askedNow } from "./turn";
-import "./claim_strip.css";
 import { t } from "../words/words";
+import "./claim_strip.css";
 
 export function ClaimStrip({ question }: { question: Question }) {
   const { claimed_by: by, dialogue } = question;

@@ -5,8 +5,8 @@ import { may } from "../state/access";
 import { runs } from "../state/service";
 import { command } from "../state/service";
 import { runTime } from "../state/run_clock";
-import "./countdown.css";
 import { t } from "../words/words";
+import "./countdown.css";
 
 /** The warning comes this long before the end, so that there is time to ask for more. */
 const WARN_S = 25;

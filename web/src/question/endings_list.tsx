@@ -2,8 +2,8 @@
 import { dismissEnding, endings } from "../state/endings";
 import { plain } from "../tree/words";
 import { robotName } from "./fault_words";
-import "./endings_list.css";
 import { t } from "../words/words";
+import "./endings_list.css";
 
 export function Endings({ run }: { run?: string }) {
   const told = endings.value.filter((each) => run === undefined || each.run === run);

@@ -16,9 +16,9 @@ import { PausedNode } from "./paused_node";
 import { SpeechControls } from "./speech_controls";
 import { SpokenQuestion } from "./spoken_question";
 import { WayEffects, Ways } from "./ways";
-import "./question_card.css";
 import { t } from "../words/words";
 import { Told } from "../words/told";
+import "./question_card.css";
 
 interface QuestionCardProps {
   question: Question;

@@ -9,8 +9,8 @@ import { queue, shown, stopChoosing } from "./queue";
 import { later } from "../app/later";
 import { AwaitedHelpCard, TogetherCard } from "./waiting_cards";
 import { AtAGlance } from "./at_a_glance";
-import "./questions_view.css";
 import { t } from "../words/words";
+import "./questions_view.css";
 
 // Whoever has one question before them needs no list.
 const QueueList = later(

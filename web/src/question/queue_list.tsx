@@ -8,9 +8,9 @@ import { faultInWords, robotName, spoken } from "./fault_words";
 import { ForAll } from "./for_all";
 import { choose, queue } from "./queue";
 import { useBatches } from "./use_batches";
-import "./queue_list.css";
 import { t } from "../words/words";
 import { Told } from "../words/told";
+import "./queue_list.css";
 
 export function QueueList({ shown }: { shown: Question | null }) {
   const batches = useBatches();

@@ -6,8 +6,8 @@ import type { Question } from "../state/questions";
 import { lastHeard, listensTo, type SpeechPhase, speechLacks, speechPhase } from "../speech/speech_state";
 import { switchOff, switchOn } from "../speech/speech_switch";
 import { repeat } from "./repeating";
-import "./speech_controls.css";
 import { t } from "../words/words";
+import "./speech_controls.css";
 
 const PHASES: Readonly<Record<SpeechPhase, string>> = {
   off: "",

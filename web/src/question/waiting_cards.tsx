@@ -8,9 +8,9 @@ import { robotName, spoken } from "./fault_words";
 import { HelpCamera, seenBy } from "./help_camera";
 import { PausedNode } from "./paused_node";
 import { PromiseButtons } from "./promise_buttons";
-import "./waiting_cards.css";
 import { t } from "../words/words";
 import { Told } from "../words/told";
+import "./waiting_cards.css";
 
 const PROMISES: Readonly<Record<Help, (part: string) => string>> = {
   place: (part) => t("would place the {part}", { part }),

@@ -7,9 +7,9 @@ import { AnsweringNote } from "./answering_note";
 import type { Arming } from "./arming";
 import { HeldBack } from "./held_back";
 import { takesAnswers } from "./takes_answers";
-import "./ways.css";
 import { t } from "../words/words";
 import { Told } from "../words/told";
+import "./ways.css";
 
 interface WaysProps {
   question: Question;

@@ -12,9 +12,9 @@ import { followed, type RequestDocument, useAsking } from "./use_asking";
 import { useKinds } from "./use_kinds";
 import { useRequests } from "./use_requests";
 import { WishForm } from "./wish_form";
-import "./requests.css";
 import { t } from "../words/words";
 import { Told } from "../words/told";
+import "./requests.css";
 
 /** Whose robots are asked, where several sites take requests. */
 const chosen = signal("");

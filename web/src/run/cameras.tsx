@@ -7,8 +7,8 @@ import { type KeptPicture, keptPictures, ownerOf, pictureNear } from "./camera_r
 import { RecordButton } from "./record_button";
 import { useLivePicture } from "./live_picture";
 import type { Moment } from "./moment";
-import "./cameras.css";
 import { decimal, t } from "../words/words";
+import "./cameras.css";
 
 const CAMERAS = [
   ["head", t("Head camera")],

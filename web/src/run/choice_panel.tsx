@@ -3,8 +3,8 @@ import { KIND_MEANINGS, plain } from "../tree/words";
 import type { NodeStarted, NodeView, RunResult } from "../wire/types";
 import { whyChosen } from "./choice";
 import { clock } from "./run_words";
-import "./choice_panel.css";
 import { decimal, t } from "../words/words";
+import "./choice_panel.css";
 
 const SHOWN_AT_MOST = 12;
 

@@ -2,12 +2,14 @@
 import { plain } from "../tree/words";
 import { picturePath } from "../wire/rest";
 import { awaiting, type OpenDialogue } from "./fold";
-import "./dialogue_now.css";
 import { t } from "../words/words";
 import { quoted } from "../question/answering";
+import "./dialogue_now.css";
+import { learn } from "../words/said";
 
 export function DialogueNow({ dialogue }: { dialogue: OpenDialogue }) {
   const { opened, raised, prompt, answered, claimedBy } = dialogue;
+  if (prompt !== null) learn(prompt.wordings);
   return (
     <article
       class="panel dialogue-now"

@@ -8,8 +8,8 @@ import * as rest from "../wire/rest";
 import type { NodeTaken, NodeView } from "../wire/types";
 import { beingDone, canBeTaken, whatWasSaid } from "./leaf_words";
 import { sentence } from "./run_words";
-import "./leaves.css";
 import { t } from "../words/words";
+import "./leaves.css";
 
 interface LeavesProps {
   run: string;

@@ -9,8 +9,8 @@ import { ended, type RunState } from "./fold";
 import type { Moment } from "./moment";
 import { RunAgain } from "./run_again";
 import { clock, sentence, siteName } from "./run_words";
-import "./run_header.css";
 import { t } from "../words/words";
+import "./run_header.css";
 
 const STATUS_WORDS = {
   running: t("running"),

@@ -31,8 +31,8 @@ import { lanesOf, type TimelineItem } from "./timeline/lanes";
 import { Timeline } from "./timeline/timeline";
 import { Transcript } from "./transcript";
 import { usePlaying } from "./use_playing";
-import "./run.css";
 import { t } from "../words/words";
+import "./run.css";
 
 const ScenePanel = later(() => import("./scene/scene_panel").then((module) => module.ScenePanel));
 

@@ -9,8 +9,8 @@ import { ago, moment, outcome, STATUS_SIGNS, STATUS_WORDS } from "./run_words";
 import { ANYTHING, isAnything, queryOf } from "./search";
 import { SearchFields } from "./search_fields";
 import { useSettled } from "./use_settled";
-import "./runs.css";
 import { t } from "../words/words";
+import "./runs.css";
 
 interface Filter {
   name: string;

@@ -4,8 +4,8 @@ import { connection } from "../state/service";
 import { withMoment } from "./moment_in_address";
 import { clock } from "./run_words";
 import { type Moment, SPEEDS } from "./moment";
-import "./scrubber.css";
 import { decimal, parts, t } from "../words/words";
+import "./scrubber.css";
 
 const STEP_S = 0.1;
 

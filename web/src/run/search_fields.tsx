@@ -1,7 +1,7 @@
 // The fields of a search: words, and from which day to which.
 import { ANYTHING, isAnything, type Search } from "./search";
-import "./search_fields.css";
 import { t } from "../words/words";
+import "./search_fields.css";
 
 interface SearchFieldsProps {
   search: Search;

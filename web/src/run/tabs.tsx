@@ -1,8 +1,8 @@
 // Panels one at a time where there is no room for all of them.
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
-import "./tabs.css";
 import { t } from "../words/words";
+import "./tabs.css";
 
 const NARROW = "(width < 720px)";
 

@@ -4,9 +4,9 @@ import type { Told } from "../wire/told";
 import type { Tone } from "../wire/types";
 import { clock } from "./run_words";
 import { joined, type Line, linesOf } from "./transcript_lines";
-import "./transcript.css";
 import { t } from "../words/words";
 import { Told as ToldText } from "../words/told";
+import "./transcript.css";
 
 /** So many lines are drawn together, and skipped together while nothing of them is in sight. */
 const PORTION = 40;

@@ -19,7 +19,7 @@ export function linesOf(event: Told): Line[] {
     seq,
     time,
     // Only a behavior has a name of the task file; robots and people are called as they are.
-    speaker: line.tone === "step" ? plain(line.speaker) : line.speaker,
+    speaker: line.tone === "step" ? plain(line.speaker) : said(line.speaker),
     text: inWords(plain(line.text), event),
   }));
 }

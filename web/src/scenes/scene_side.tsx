@@ -10,8 +10,8 @@ import { keyOf, thingProblems } from "./thing_problems";
 import { TopView } from "./top_view";
 import { useSceneHands } from "./use_scene_hands";
 import "../trees/editing/editing.css";
-import "./scenes.css";
 import { t } from "../words/words";
+import "./scenes.css";
 
 export function SceneSide({ editing }: { editing: Editing }) {
   const { text, says: source } = useRead(editing.text, readScene);

@@ -4,8 +4,8 @@ import { may } from "../state/access";
 import { connection } from "../state/service";
 import * as rest from "../wire/rest";
 import type { SceneSummary } from "../wire/types";
-import "./scenes.css";
 import { t, tn } from "../words/words";
+import "./scenes.css";
 
 export function ScenesView() {
   const [scenes, setScenes] = useState<readonly SceneSummary[] | null>(null);

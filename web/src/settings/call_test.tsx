@@ -2,8 +2,8 @@
 import { useState } from "preact/hooks";
 import { testCalling } from "../calling/call_test";
 import { type Finding, type State, verdict } from "../calling/findings";
-import "./call_test.css";
 import { t } from "../words/words";
+import "./call_test.css";
 
 const SIGNS: Readonly<Record<State, { path: string; name: string }>> = {
   well: { path: "m5 10.5 3.5 3.5L15 7", name: t("Works") },

@@ -7,8 +7,8 @@ import { AnswerKeys } from "./answer_keys";
 import { LanguageChoice } from "./language_choice";
 import { Calling } from "./calling";
 import { VoiceChoice } from "./voice_choice";
-import "./settings.css";
 import { t } from "../words/words";
+import "./settings.css";
 
 const THEMES: readonly (readonly [Theme, string])[] = [
   ["system", t("As the device")],

@@ -4,8 +4,8 @@ import { useState } from "preact/hooks";
 import { helperName } from "../state/preferences";
 import { call, session, sessionEnded, signIn } from "../state/service";
 import { Refusal } from "../wire/rest";
-import "./sign_in.css";
 import { t } from "../words/words";
+import "./sign_in.css";
 
 export function SignIn() {
   return (

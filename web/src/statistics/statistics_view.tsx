@@ -9,9 +9,9 @@ import type { GroupedStatistics, Statistics } from "../wire/types";
 import { answersOf, faultsOf, type Figure, outcomesOf, rateOf, runsOf } from "./statistics_words";
 import { useStatistics } from "./use_statistics";
 import "../run/search_fields.css";
-import "./statistics.css";
 import { t } from "../words/words";
 import { locale } from "../words/language";
+import "./statistics.css";
 
 interface Chosen {
   readonly days: Search;

@@ -21,8 +21,8 @@ import { type Asked, nextStep, readBackOf, wishOf } from "./steps";
 import { useIdle } from "./use_idle";
 import { useRobot } from "./use_robot";
 import "../requests/requests.css";
-import "./touch.css";
 import { t } from "../words/words";
+import "./touch.css";
 
 const DEEDS: readonly (readonly [Kind, string])[] = [
   ["transport", t("Bring something somewhere")],

@@ -9,9 +9,9 @@ import { WrongSign } from "./signs";
 import { inSight, useIntoSight, useSight } from "./sight";
 import { type GoTo, useWalk } from "./walk";
 import { described } from "./words";
-import "./tree.css";
 import { t } from "../words/words";
 import { locale } from "../words/language";
+import "./tree.css";
 
 const SHOWN_AT_FIRST = 120;
 const SHOWN_AT_FIRST_COMPACT = 14;

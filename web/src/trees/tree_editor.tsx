@@ -4,8 +4,8 @@ import type { DocumentKind } from "../document/document_kind";
 import * as rest from "../wire/rest";
 import { TreeSide } from "./editing/tree_side";
 import { NEW_TREE } from "./tree_text";
-import "./trees.css";
 import { t } from "../words/words";
+import "./trees.css";
 
 const TREE: DocumentKind = {
   said: t("task tree"),

@@ -7,8 +7,8 @@ import type { DocumentSummary } from "../wire/types";
 import { DropZone, FileButton } from "./drop_zone";
 import { TreeDetails } from "./tree_details";
 import { takeFile } from "./upload";
-import "./trees.css";
 import { t } from "../words/words";
+import "./trees.css";
 
 export function TreesView({ tree }: { tree: string | null }) {
   const [trees, setTrees] = useState<readonly DocumentSummary[] | null>(null);

@@ -1,6 +1,6 @@
 // Brings the words of the reader's language, a file at a time: nobody waits for those of pages not looked at.
 import { language } from "./language";
-import { addSentences } from "./said";
+import { takeSentences } from "./said";
 import { addWords, type Words } from "./words";
 
 /** Every file of texts by where it lies. */
@@ -15,7 +15,7 @@ export async function loadAnsweringWords(): Promise<void> {
     load("answering"),
     load("notices"),
   ]);
-  addSentences(sentences, clauses);
+  takeSentences(sentences, clauses);
 }
 
 /** What the other pages say. */

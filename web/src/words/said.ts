@@ -9,8 +9,9 @@ const texts = new Map<string, string>();
 const wordings = new Map<string, readonly WordedSentence[]>();
 let patterns: readonly { pattern: RegExp; text: string }[] = [];
 
-/** `sentences` by their English text with fields; `clauses` are also known where only the filled-in text is. */
-export function addSentences(sentences: Words, clauses: Words): void {
+/** Take over `sentences` by their English text with fields, and `clauses`, which are also known filled in. */
+export function takeSentences(sentences: Words, clauses: Words): void {
+  texts.clear();
   for (const [key, text] of Object.entries({ ...sentences, ...clauses })) texts.set(key, String(text));
   patterns = Object.entries(clauses).map(([key, text]) => ({ pattern: patternOf(key), text: String(text) }));
 }
@@ -19,6 +20,7 @@ export function addSentences(sentences: Words, clauses: Words): void {
 export function learn(more: readonly Wording[]): void {
   if (texts.size === 0) return;
   for (const { text, sentences } of more) {
+    if (sentences.length === 0) continue;
     wordings.delete(text);
     wordings.set(text, sentences);
   }

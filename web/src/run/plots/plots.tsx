@@ -8,8 +8,8 @@ import { PlotDrawing } from "./plot_drawing";
 import { PlotTable } from "./plot_table";
 import { openPoseNumbers, type PoseNumbers, seriesOf } from "./pose_numbers";
 import type { Series } from "./series";
-import "./plots.css";
 import { t } from "../../words/words";
+import "./plots.css";
 
 /** What is recorded meanwhile is read so often, in seconds of the run's clock. */
 const READ_EVERY_S = 5;

@@ -11,8 +11,8 @@ import { createPoseSource, type PoseSource } from "./pose_source";
 import { SceneCanvas } from "./scene_canvas";
 import { useIntervening } from "./intervening";
 import { WhereForm } from "./where_form";
-import "./scene.css";
 import { t } from "../../words/words";
+import "./scene.css";
 
 /** The column of the scene is shorter than that of the tree there. */
 const ROOM_BELOW = "(720px <= width < 1200px)";

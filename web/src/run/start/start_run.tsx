@@ -10,8 +10,8 @@ import { AnswerChoice, WorldChoice } from "./choices";
 import { Field, Mistake, told } from "./field";
 import { type Choices, type Filled, firstFilled, isLive, readChoices, request, settled, withChosen } from "./filled";
 import { atTheirFields, type StartMistakes } from "./start_mistakes";
-import "./start_run.css";
 import { t } from "../../words/words";
+import "./start_run.css";
 
 const SPEEDS: readonly (readonly [string, string])[] = [
   ["0.5", t("Half speed")],

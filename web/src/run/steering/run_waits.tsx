@@ -7,8 +7,8 @@ import * as rest from "../../wire/rest";
 import type { WaitView } from "../../wire/types";
 import { sentence } from "../run_words";
 import { whyItWaits } from "./steering_words";
-import "./run_waits.css";
 import { t } from "../../words/words";
+import "./run_waits.css";
 
 interface RunWaitsProps {
   run: string;

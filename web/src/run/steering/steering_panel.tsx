@@ -10,8 +10,8 @@ import { sentence } from "../run_words";
 import { AutonomyChoice } from "./autonomy_choice";
 import { NodeMenu } from "./node_menu";
 import { useOffers } from "./use_offers";
-import "./steering_panel.css";
 import { t } from "../../words/words";
+import "./steering_panel.css";
 
 interface SteeringPanelProps {
   state: RunState;

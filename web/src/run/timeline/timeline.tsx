@@ -6,8 +6,8 @@ import type { Lane, TimelineItem } from "./lanes";
 import { Lanes } from "./lanes_drawing";
 import { TimelineList } from "./list";
 import { middleOf, SMALLEST_SPAN_S, type Span, zoomed } from "./span";
-import "./timeline.css";
 import { t } from "../../words/words";
+import "./timeline.css";
 
 interface TimelineProps {
   lanes: readonly Lane[];

@@ -8,8 +8,8 @@ import { DefinitionDrawing } from "../definition_drawing";
 import { drawnNodes } from "./drawn_nodes";
 import { LONGEST_TEXT, readTask } from "./task_source";
 import { TreeEditing } from "./tree_editing";
-import "./editing.css";
 import { t } from "../../words/words";
+import "./editing.css";
 
 const LABEL = t("Drawing of this text");
 
