@@ -16,7 +16,7 @@ from mend.server.composition import Service
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 ENGLISH_LEFT = (Path(__file__).parent / "english_left.js").read_text().strip()
-NARROW_PX = 360
+NARROW_PX, WIDE_PX = 360, 1440
 
 # Names, what people have written, and what is understood in English alone.
 OWN_WORDS = (
@@ -82,9 +82,12 @@ async def test_every_page_is_german_and_has_room_for_it(
     await expect(page.locator("main")).to_be_visible()
     await expect(page.get_by_text("Wird geladen …")).to_have_count(0)
     await load_axe(page)
-    await settle(page)
-    assert await overlaps(page) == []
-    assert await violations(page, RULES["light"]) == []
-    assert await page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
+    for width in (NARROW_PX, WIDE_PX):
+        await page.set_viewport_size({"width": width, "height": TALL})
+        await settle(page)
+        assert await overlaps(page) == [], width
+        assert await violations(page, RULES["light"]) == [], width
+        beyond = await page.evaluate("document.documentElement.scrollWidth - innerWidth")
+        assert beyond <= 0, f"{beyond} px too wide at {width}"
     left = await page.evaluate(ENGLISH_LEFT)
     assert [each for each in left if not any(own in each for own in OWN_WORDS)] == []

@@ -14,7 +14,7 @@ const SAID: Readonly<Record<string, { yes: readonly string[]; no: readonly strin
     no: ["no", "no thank you", "no thanks", "no that is wrong", "no that's wrong", "that is wrong", "wrong"],
   },
   de: {
-    yes: ["ja", "ja bitte", "ja das stimmt", "das stimmt", "ja genau", "genau", "ja richtig", "richtig", "stimmt"],
+    yes: ["ja", "ja bitte", "ja das stimmt", "ja genau", "genau", "ja richtig", "richtig"],
     no: ["nein", "nein danke", "nein das stimmt nicht", "das stimmt nicht", "das ist falsch", "nein das ist falsch", "falsch"],
   },
 };

@@ -29,9 +29,9 @@ interface Props {
   children?: preact.ComponentChildren;
 }
 
-const HINT =
-  "3-D view of the robot and the objects. Arrow keys turn it, plus and minus zoom, Home resets it; " +
-  "Page Up and Page Down choose an object, Enter opens its menu.";
+const HINT = t(
+  "3-D view of the robot and the objects. Arrow keys turn it, plus and minus zoom, Home resets it; Page Up and Page Down choose an object, Enter opens its menu.",
+);
 
 export function SceneCanvas(props: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
