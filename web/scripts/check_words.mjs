@@ -20,6 +20,8 @@ const NOTICES = "calling/notices.ts";
 /** Attributes that people read or hear. */
 const HEARD = new Set(["aria-label", "aria-valuetext", "aria-description", "alt", "title", "placeholder", "label"]);
 const LETTERS = /\p{L}{2,}/u;
+/** What is told people; what only developers read begins with a small letter. */
+const SENTENCE = /^[A-Z0-9][^/]*( [a-z]+){2,}/;
 /** What is called so in every language. */
 const NAMES = new Set(["Mend", "mend site open SCENE --world building --fleet live"]);
 
@@ -59,8 +61,10 @@ function read(path) {
     const from = each.importKind === "type" || each.exportKind === "type" ? undefined : each.source?.value;
     if (from?.startsWith(".")) module.imports.push(relative(SOURCES, resolve(dirname(path), from)));
   }
+  const texts = new Set();
   walk(program, (node) => {
-    if (node.type === "CallExpression") said(node, module.says);
+    if (node.type === "CallExpression") said(node, module.says, texts);
+    if (isSentence(node) && !texts.has(node)) module.untold.push(textOf(node));
     if (node.type === "JSXText") untold(node.value, module);
     if (node.type === "JSXAttribute" && HEARD.has(node.name.name)) {
       for (const text of literalsOf(node.value)) untold(text, module);
@@ -69,9 +73,20 @@ function read(path) {
   return module;
 }
 
-function said({ callee, arguments: given }, says) {
-  const key = { t: given[0], parts: given[0], tn: given[1] }[callee.name];
+function said({ callee, arguments: given }, says, texts) {
+  if (!["t", "tn", "parts"].includes(callee.name)) return;
+  const [key, one] = callee.name === "tn" ? [given[1], given[0]] : [given[0]];
   for (const text of literalsOf(key)) says.add(text);
+  for (const each of [key, one]) if (each !== undefined) walk(each, (node) => texts.add(node));
+}
+
+function isSentence(node) {
+  return SENTENCE.test(textOf(node) ?? "");
+}
+
+function textOf(node) {
+  if (node.type === "Literal" && typeof node.value === "string") return node.value;
+  return node.type === "TemplateElement" ? node.value.cooked : undefined;
 }
 
 function untold(text, module) {
