@@ -28,6 +28,7 @@ from mend.dialogue.script import (
 )
 from mend.dialogue.telling import SEEN_NOW, asked_about, not_yet, nothing_could_be_seen
 from mend.dialogue.ways import ways_of, ways_of_repeated
+from mend.dialogue.worded import Worded, joined, worded
 from mend.dialogue.wording import sentence
 from mend.tasks.issue import Issue
 from mend.tasks.resolution import Resolution
@@ -35,6 +36,7 @@ from mend.tasks.resolution import Resolution
 MOST_LOOKS = 10
 """So often the robot looks at a helper's word that one promise is kept."""
 
+_THANKS = worded("Thank you.")
 _KEEPS = "I keep watching"
 _OR_FAILS = "; if I do not see it then, {attempt} has failed, and {later}."
 
@@ -140,14 +142,14 @@ class Conversation:
         state = self._require_help_state(DialogueCall.HELP_SEEN)
         placed = self._script.put_right.get(Expectation.AT_PLACE) if at_place else None
         if state.help is Help.PUT_BACK and placed is not None and change.by_a_person:
-            said = f"Thank you. {self._word(SEEN_NOW[Expectation.AT_PLACE])}"
+            said = joined(_THANKS, self._word(SEEN_NOW[Expectation.AT_PLACE]))
             return self._settle(CloseReason.RESOLVED, placed, said, change)
-        said = state.thanks if change.by_a_person else state.unchanged
+        text = state.thanks if change.by_a_person else state.unchanged
         if change is Change.UNKNOWN:
-            said = SEEN_NOW[EXPECTED[state.help]]
+            text = SEEN_NOW[EXPECTED[state.help]]
         if change is Change.LED_ROUND:
-            said = SEEN_NOW[Expectation.LED_ROUND]
-        said = self._word(said)
+            text = SEEN_NOW[Expectation.LED_ROUND]
+        said = self._word(text)
         return self._settle(CloseReason.RESOLVED, state.resolution, said, change)
 
     def help_not_seen(self, felt: Felt | None = None, *, blind: str = "") -> list[Turn]:
@@ -163,7 +165,7 @@ class Conversation:
             if self._outlook.times > 1:
                 return self._give_up(said)
             close = self._close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY)
-            return [Remark(f"{said} I look again before I go on."), close]
+            return [Remark(joined(said, worded("I look again before I go on."))), close]
         if isinstance(self._at, ToldState):
             doubted = Remark(self._word(self._at.doubted))
             return [doubted, *self._enter(self._at.otherwise, heard=False)]
@@ -196,9 +198,9 @@ class Conversation:
         CALLS.require(self._phase, DialogueCall.NOT_SEEN_YET)
         state = self._require_help_state(DialogueCall.NOT_SEEN_YET)
         self._phase = ConversationPhase.AWAITING_HELP
-        asked = self._word(asked_about(state, felt))
-        said = nothing_could_be_seen(blind) if blind else not_yet(asked, sight)
-        return [Remark(f"{said} {_KEEPS}.")]
+        asked = asked_about(state, felt)
+        said = nothing_could_be_seen(blind) if blind else self._word(not_yet(asked, sight))
+        return [Remark(joined(said, worded(f"{_KEEPS}.")))]
 
     def take_back(self) -> list[Turn]:
         """Whoever promised the help cannot give it after all: as if they had said no to it."""
@@ -215,8 +217,8 @@ class Conversation:
         resolution = self._script.put_right.get(seen.seen)
         if resolution is None:
             raise ValueError(f"'{seen.seen}' does not put an issue '{self._issue.kind}' right")
-        thanks = "Thank you. " if seen.change.by_a_person else ""
-        said = thanks + self._word(SEEN_NOW[seen.seen])
+        thanks = _THANKS if seen.change.by_a_person else ""
+        said = joined(thanks, self._word(SEEN_NOW[seen.seen]))
         return self._settle(CloseReason.WITHDRAWN, resolution, said, seen.change)
 
     def silence(self) -> list[Turn]:
@@ -224,7 +226,7 @@ class Conversation:
         CALLS.require(self._phase, DialogueCall.SILENCE)
         if isinstance(self._at, AskState) and self._at.unanswered is not None:
             return self._enter(self._at.unanswered, heard=False)
-        return self._give_up("I heard no answer.")
+        return self._give_up(worded("I heard no answer."))
 
     def abort(self) -> list[Turn]:
         """The run has ended, or the issue no longer matters."""
@@ -249,7 +251,7 @@ class Conversation:
             case LeaveState():
                 return [Remark(self._word(state.text)), self._close(CloseReason.LEFT_OUT, None)]
             case CloseState(resolution=Resolution.ROBOT_RETRY):
-                said = f"{self._word(state.text)} {self._next_after_failure()}"
+                said = joined(self._word(state.text), self._next_after_failure())
                 close = self._close(CloseReason.RESOLVED, Resolution.ROBOT_RETRY, failed=True)
                 return [Remark(said), close]
             case CloseState(resolution=resolution):
@@ -293,7 +295,7 @@ class Conversation:
         return self._asked
 
     def _settle(
-        self, reason: CloseReason, wanted: Resolution, said: str, change: Change
+        self, reason: CloseReason, wanted: Resolution, said: Worded, change: Change
     ) -> list[Turn]:
         """Close with what was seen, which tells whether anybody has helped, and what comes next."""
         helped = change.by_a_person
@@ -308,10 +310,10 @@ class Conversation:
             case Resolution.ROBOT_FINISH if not led_round or self._said_with.begins_anew:
                 then = sentence(self._said_with.going_on())
             case _:
-                then = ""
+                then = Worded("", ())
         failed = failed and resolution is Resolution.ROBOT_RETRY
         close = self._close(reason, resolution, helped=helped, failed=failed)
-        return [Remark(f"{said} {then}".strip()), close]
+        return [Remark(joined(said, then)), close]
 
     def _resolution_for(self, wanted: Resolution, helped: bool) -> Resolution:
         if helped and not self._outlook.helped_out:
@@ -324,11 +326,11 @@ class Conversation:
             return Resolution.ROBOT_RETRY
         return Resolution.ROBOT_RETRY if self._outlook.helped_out else wanted
 
-    def _give_up(self, last_word: str) -> list[Turn]:
+    def _give_up(self, last_word: Worded) -> list[Turn]:
         closing = self._close(CloseReason.GAVE_UP, Resolution.ROBOT_RETRY, failed=True)
-        return [Remark(f"{last_word} {self._next_after_failure()}"), closing]
+        return [Remark(joined(last_word, self._next_after_failure())), closing]
 
-    def _next_after_failure(self) -> str:
+    def _next_after_failure(self) -> Worded:
         return sentence(self._said_with.if_it_fails())
 
     def _close(
@@ -347,5 +349,5 @@ class Conversation:
         assert isinstance(self._at, HelpState)
         return self._at
 
-    def _word(self, text: str) -> str:
+    def _word(self, text: str) -> Worded:
         return self._reading.word(text)

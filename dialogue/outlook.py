@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from mend.dialogue.spoken import choice_of, count_of
+from mend.dialogue.worded import Worded, worded
 
 
 class Next(StrEnum):
@@ -68,37 +69,57 @@ class Outlook:
         return self.attempt > 1 or self.times > 1 or self.failed.next is Next.RUN_FAILS
 
     @property
-    def times_spoken(self) -> str:
+    def attempt_spoken(self) -> Worded:
+        """Which attempt it is: `attempt 1 of 3`."""
+        return self._attempt("attempt {attempt} of {attempts}", self.attempt)
+
+    @property
+    def times_spoken(self) -> Worded:
         """How often this kind of issue has come: `twice`, `three times`."""
         return count_of(self.times)
 
-    def if_it_fails(self) -> str:
+    def if_it_fails(self) -> Worded:
         """What is done next if this attempt fails, as a clause."""
-        return self._clause(self.failed, f"attempt {self.attempt + 1} of {self.attempts}")
+        next_one = self._attempt("attempt {attempt} of {attempts}", self.attempt + 1)
+        return self._clause(self.failed, next_one)
 
-    def after_help(self) -> str:
+    def after_help(self) -> Worded:
         """What is done next if the robot is helped to another try, as a clause."""
         if self.helped_out:
             return self.if_it_fails()
-        return self._clause(self.helped, f"still attempt {self.attempt} of {self.attempts}")
+        same_one = self._attempt("still attempt {attempt} of {attempts}", self.attempt)
+        return self._clause(self.helped, same_one)
 
-    def going_on(self) -> str:
+    def going_on(self) -> Worded:
         """What is done next once the issue is put right, as a clause."""
-        return self.after_help() if self.begins_anew else "I go on"
+        return self.after_help() if self.begins_anew else worded("I go on")
 
-    def _clause(self, sequel: Sequel, which: str) -> str:
-        who = "I try" if self.alone else "one of us tries"
+    def _attempt(self, key: str, attempt: int) -> Worded:
+        return worded(key, attempt=str(attempt), attempts=str(self.attempts))
+
+    def _clause(self, sequel: Sequel, which: Worded) -> Worded:
+        again = worded(self._again, which=which)
         names = choice_of(sequel.names)
         match sequel.next:
             case Next.TRY_AGAIN:
-                return f"{who} again ({which})"
+                return again
             case Next.OTHERS_FIRST:
-                return f"I go on with {names} first, then {who} again ({which})"
+                return worded(self._others_first, names=names, which=which)
             case Next.INSTEAD:
-                return f"I take {names} instead"
+                return worded("I take {names} instead", names=names)
             case Next.EITHER:
-                return f"{who} again ({which}), or I take {names} instead"
+                return worded("{again}, or I take {names} instead", again=again, names=names)
             case Next.ANY_OF:
-                return f"{who} again ({which}), or I go on with {names} before that"
+                return worded(
+                    "{again}, or I go on with {names} before that", again=again, names=names
+                )
             case Next.RUN_FAILS:
-                return "the task ends here, unfinished"
+                return worded("the task ends here, unfinished")
+
+    @property
+    def _again(self) -> str:
+        return "I try again ({which})" if self.alone else "one of us tries again ({which})"
+
+    @property
+    def _others_first(self) -> str:
+        return f"I go on with {{names}} first, then {self._again}"

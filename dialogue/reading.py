@@ -12,6 +12,7 @@ from mend.dialogue.script import (
     State,
     ToldState,
 )
+from mend.dialogue.worded import Worded
 from mend.dialogue.wording import word
 from mend.tasks.issue import Issue
 from mend.tasks.resolution import Resolution
@@ -40,17 +41,16 @@ class ScriptReading:
         """What follows under that name."""
         return self.script.states[self.following(name)]
 
-    def effect(self, following: str, effect: str) -> str:
+    def effect(self, following: str, effect: str) -> Worded:
         """What an answer will do; where it leads past a question, what that one's no does."""
         state = self.script.states[following]
         if isinstance(state, AskState) and self._passes_over(state):
             return self.effect(state.no, state.no_effect)
         return self.word(effect)
 
-    def word(self, text: str, *, named: bool = False) -> str:
+    def word(self, text: str, *, named: bool = False) -> Worded:
         """A text of the script, filled in; `named`: the object was named just before."""
-        worded = word(text, self.issue, self.said_with, named=named)
-        return f"{worded[:1].upper()}{worded[1:]}"
+        return word(text, self.issue, self.said_with, named=named).capitalized()
 
     def names_object(self, text: str) -> bool:
         """Whether a worded text names the object, so that `it` is understood after it."""

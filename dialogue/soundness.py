@@ -96,7 +96,7 @@ def _endless(script: Script) -> Iterator[str]:
 
 def _badly_worded(script: Script) -> Iterator[str]:
     for name, state in script.states.items():
-        for field, text in _sentences_of(state):
+        for field, text in sentences_in(state):
             where = f"'{field}' of state '{name}'"
             if not text.strip() and field not in _MAY_BE_EMPTY:
                 yield f"{where} is empty"
@@ -110,7 +110,7 @@ def _badly_worded(script: Script) -> Iterator[str]:
                 yield f"{where} has the field {{{each}}}; there are only {known}"
 
 
-def _sentences_of(state: State) -> Iterator[tuple[str, str]]:
+def sentences_in(state: State) -> Iterator[tuple[str, str]]:
     """All that a state says, by what it is called there."""
     for field in _SENTENCES[type(state)]:
         yield field, getattr(state, field)

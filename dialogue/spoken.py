@@ -2,7 +2,14 @@
 
 import re
 
-_COUNTS = ("never", "once", "twice", "three", "four", "five", "six", "seven", "eight", "nine")
+from mend.dialogue.worded import Worded, worded
+
+_COUNTS = (
+    "never",
+    "once",
+    "twice",
+    *(f"{each} times" for each in ("three", "four", "five", "six", "seven", "eight", "nine")),
+)
 
 
 def spoken(identifier: str) -> str:
@@ -15,15 +22,20 @@ def called(robots: str) -> str:
     return spoken(re.sub(r"(?<=\w)-[0-9a-f]{8}\b", "", robots))
 
 
-def count_of(times: int) -> str:
+def count_of(times: int) -> Worded:
     """How often: `once`, `twice`, `three times`, `12 times`."""
-    if 0 <= times < 3:
-        return _COUNTS[times]
-    return f"{_COUNTS[times] if times < len(_COUNTS) else times} times"
+    if 0 <= times < len(_COUNTS):
+        return worded(_COUNTS[times])
+    return worded("{count} times", count=str(times))
 
 
 MOST_NAMES = 4
 """Of several things so many are of use: one more than are named."""
+
+
+def the(name: str) -> Worded:
+    """A part, or what is carried, as one speaks of it: `the sugar bowl`."""
+    return worded("the {part}", part=spoken(name))
 
 
 def bound_for(name: str, place: str) -> str:
@@ -31,11 +43,18 @@ def bound_for(name: str, place: str) -> str:
     return f"{name} for the {place}"
 
 
-def choice_of(names: tuple[str, ...]) -> str:
+def choice_of(names: tuple[str, ...]) -> Worded:
     """Some of several things: `the cup`, `the cup or the saucer`, `the cup, the saucer, ...`."""
-    said = [f"the {spoken(name)}" for name in names[: MOST_NAMES - 1]]
+    said = [the(name) for name in names[: MOST_NAMES - 1]]
     if not said:
-        return "something else"
+        return worded("something else")
     if len(names) >= MOST_NAMES:
-        return f"{', '.join(said)} or another part"
-    return " or ".join([", ".join(said[:-1]), said[-1]] if said[:-1] else said)
+        return worded("{parts} or another part", parts=_listed(said))
+    if len(said) == 1:
+        return said[0]
+    return worded("{parts} or {last}", parts=_listed(said[:-1]), last=said[-1])
+
+
+def _listed(said: list[Worded]) -> Worded:
+    first, *others = said
+    return worded("{part}, {others}", part=first, others=_listed(others)) if others else first

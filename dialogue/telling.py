@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from mend.dialogue.script import Expectation, Felt, HelpState, Sight
 from mend.dialogue.spoken import spoken
+from mend.dialogue.worded import Worded, joined, worded
 from mend.dialogue.wording import sentence, without_question
 
 SEEN_NOW: Mapping[Expectation, str] = {
@@ -27,9 +28,9 @@ _SIGHTS: Mapping[Sight, str] = {
 }
 
 
-def nothing_could_be_seen(why: str) -> str:
+def nothing_could_be_seen(why: str) -> Worded:
     """Why a look tells nothing of the help that was promised."""
-    return f"{sentence(spoken(why))} I cannot see whether anybody has helped."
+    return joined(sentence(spoken(why)), worded("I cannot see whether anybody has helped."))
 
 
 def asked_about(state: HelpState, felt: Felt | None) -> str:
@@ -38,6 +39,6 @@ def asked_about(state: HelpState, felt: Felt | None) -> str:
 
 
 def not_yet(asked: str, sight: Sight | None) -> str:
-    """That help was not seen yet, as the question about it states it, and what was instead."""
+    """That help was not seen yet, as the script's question states it, and what was instead."""
     said = without_question(asked) or "I do not see that help yet."
     return said if sight is None else f"{said} {_SIGHTS[sight]}"

@@ -4,7 +4,8 @@ import re
 from string import Formatter
 
 from mend.dialogue.outlook import Outlook
-from mend.dialogue.spoken import called, spoken
+from mend.dialogue.spoken import called, spoken, the
+from mend.dialogue.worded import Worded, filled_in, sentences_of, worded
 from mend.tasks.issue import Issue
 
 _GUESSES = ("guess_1", "guess_2", "guess_3")
@@ -46,50 +47,64 @@ _ROUNDED_M = 5.0
 """and how far off others stand is said as roundly as people take it."""
 
 
-def word(text: str, issue: Issue, outlook: Outlook, *, named: bool = False) -> str:
+def word(text: str, issue: Issue, outlook: Outlook, *, named: bool = False) -> Worded:
     """Fill in a sentence; a leaf without an object or place is spoken of by its own name.
 
     `named`: the object was named just before.
     """
-    it = "it" if named else f"the {spoken(issue.object or issue.item or issue.name)}"
-    guesses = dict.fromkeys(_GUESSES, "")
-    guesses.update(zip(_GUESSES, map(spoken, issue.guesses), strict=False))
-    return text.format(
-        **guesses,
+    it = worded("it") if named else the(issue.object or issue.item or issue.name)
+    args: dict[str, str] = dict.fromkeys(_GUESSES, "")
+    args.update(zip(_GUESSES, map(_where, issue.guesses), strict=False))
+    args.update(
         item=spoken(issue.item or issue.name),
         it=it,
         put_in=_put_in(issue),
         fetch=_fetch(issue, it),
         message=issue.message or "",
-        person=issue.person or "somebody",
+        person=issue.person or worded("somebody"),
         object=spoken(issue.object or issue.item or issue.name),
-        with_object=f" with the {spoken(issue.object)}" if issue.object else "",
+        with_object=worded(" with {it}", it=the(issue.object)) if issue.object else "",
         place=spoken(issue.place or issue.name),
         name=spoken(issue.name),
         robot=called(issue.robot),
         why=_why(issue),
-        attempt=f"attempt {outlook.attempt} of {outlook.attempts}",
+        attempt=outlook.attempt_spoken,
         times=outlook.times_spoken,
         again=outlook.after_help(),
         later=outlook.if_it_fails(),
         go_on=outlook.going_on(),
     )
+    return filled_in(text, args)
 
 
-def _put_in(issue: Issue) -> str:
-    item = f"the {spoken(issue.item or issue.name)}"
+def _where(guess: str) -> str:
+    """Where a lost robot may be, `at 101`."""
+    place = spoken(guess).removeprefix("at ")
+    return worded("at {place}", place=place) if guess.startswith("at ") else place
+
+
+def _put_in(issue: Issue) -> Worded:
+    item = the(issue.item or issue.name)
     if issue.held_by is None:
-        return f"put {item} into my basket"
-    there = called(issue.held_by)
-    if issue.away_m is not None and issue.away_m > _AT_HAND_M:
-        there += f", which stands about {_roundly(issue.away_m):.0f} m from here,"
-    return f"take {item} out of the basket of {there} and put it into mine"
+        return worded("put {it} into my basket", it=item)
+    robot = called(issue.held_by)
+    if issue.away_m is None or issue.away_m <= _AT_HAND_M:
+        return worded(
+            "take {it} out of the basket of {robot} and put it into mine", it=item, robot=robot
+        )
+    return worded(
+        "take {it} out of the basket of {robot}, which stands about {away} m from here, and put it "
+        "into mine",
+        it=item,
+        robot=robot,
+        away=f"{_roundly(issue.away_m):.0f}",
+    )
 
 
-def _fetch(issue: Issue, it: str) -> str:
+def _fetch(issue: Issue, it: Worded) -> Worded:
     if issue.held_by is None:
-        return f"put {it} into my basket"
-    return f"bring {it} from {called(issue.held_by)}"
+        return worded("put {it} into my basket", it=it)
+    return worded("bring {it} from {robot}", it=it, robot=called(issue.held_by))
 
 
 def _roundly(length_m: float) -> float:
@@ -97,16 +112,19 @@ def _roundly(length_m: float) -> float:
 
 
 def without_question(text: str) -> str:
-    """What a text states, without the questions at its end; empty if it only asks."""
+    """What a script's text states, without the questions at its end; empty if it only asks."""
     sentences = re.split(r"(?<=[.!?]) ", text)
     while sentences and sentences[-1].endswith("?"):
         sentences.pop()
     return " ".join(sentences)
 
 
-def sentence(clause: str) -> str:
+def sentence(clause: str) -> Worded:
     """A clause as a sentence of its own."""
-    return f"{clause[:1].upper()}{clause[1:].rstrip('.')}."
+    whole = clause if isinstance(clause, Worded) else Worded(clause, sentences_of(clause))
+    if clause.endswith("."):
+        whole = Worded(clause.rstrip("."), sentences_of(clause.rstrip(".")))
+    return worded("{clause}.", clause=whole).capitalized()
 
 
 def unknown_fields(text: str) -> list[str]:
@@ -118,9 +136,12 @@ def unknown_fields(text: str) -> list[str]:
     return [field for field in fields if field not in FIELDS]
 
 
-def _why(issue: Issue) -> str:
+def _why(issue: Issue) -> Worded | str:
     reason = issue.reason
     if issue.object:
         named = rf"(?<!the )(?<!a )\b{re.escape(issue.object)}\b"
         reason = re.sub(named, f"the {issue.object}", reason)
-    return f" {sentence(called(reason))}" if reason else ""
+    if not reason:
+        return ""
+    why = sentence(called(reason))
+    return Worded(f" {why}", why.sentences)

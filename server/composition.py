@@ -351,7 +351,10 @@ def _speech(settings: Settings) -> SpeechAbilities:
     return SpeechAbilities(
         texts,
         choose_ears(
-            settings.speech_recognition, settings.speech_conversations, settings.speech_model
+            settings.speech_recognition,
+            settings.speech_conversations,
+            settings.speech_model,
+            settings.speech_language,
         ),
     )
 

@@ -23,6 +23,7 @@ from mend.server.limits import Limits
 from mend.server.proxies import ProxyNetwork
 from mend.server.public_url import PublicUrl
 from mend.server.retention import KeepSettings
+from mend.server.speech.vocabulary import SpokenLanguage
 from mend.server.speech.voice import VoiceChoice
 
 Seconds = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
@@ -139,6 +140,8 @@ class Settings(BaseSettings):
     """Whether helpers may answer by voice."""
     speech_model: Path | None = None
     """A folder with a speech model of one's own (Moonshine); None: PocketSphinx alone."""
+    speech_language: SpokenLanguage = SpokenLanguage.ENGLISH
+    """In which language people are understood; another than English needs a model of it."""
     speech_conversations: Annotated[int, Field(ge=1, le=1000)] = 8
     """How many helpers may answer by voice at once; each takes a process of about 80 MB."""
     log_level: Literal["critical", "error", "warning", "info", "debug"] = "info"

@@ -1,9 +1,11 @@
 import preact from "@preact/preset-vite";
 import { defineConfig } from "vite";
+import { LANGUAGES } from "./languages.mjs";
 
 const SERVICE = "http://127.0.0.1:8080";
 
 export default defineConfig({
+  define: { LANGUAGES },
   plugins: [preact({ devToolsEnabled: false })],
   build: {
     // Inside the Python package, so that the wheel and an editable install both serve it.

@@ -10,10 +10,11 @@ from mend.errors import NotFoundError
 from mend.server.api.problems import ProblemError, documented
 from mend.server.api.services import DialogueId, Services, WithServices
 from mend.server.speech.ear import NoEars
+from mend.server.speech.german import PHRASES_IN_GERMAN
 from mend.server.speech.phrases import FIXED, effect_text, help_text
 from mend.server.speech.question import find_prompt
 from mend.server.speech.views import Ability, SpeechView
-from mend.server.speech.vocabulary import PHRASES_OF, Vocabulary
+from mend.server.speech.vocabulary import PHRASES_OF, SpokenLanguage, Vocabulary
 from mend.server.speech.voice import NoVoice, VoiceError
 
 router = APIRouter(tags=["speech"])
@@ -30,8 +31,11 @@ async def get_speech(services: WithServices) -> SpeechView:
     """Whether there is a voice and recognition, or why not; and what can be said."""
     texts, ears = services.speech.texts, services.speech.ears
     heard = (Vocabulary.PROMISE, Vocabulary.WAYS, Vocabulary.ANSWER)
-    said = {command: said for each in heard for command, said in PHRASES_OF[each].items()}
+    german = ears.language is SpokenLanguage.GERMAN
+    understood = PHRASES_IN_GERMAN if german else PHRASES_OF
+    said = {command: said for each in heard for command, said in understood[each].items()}
     return SpeechView(
+        language=ears.language,
         voice=Ability(available=False, why_not=texts.why_not)
         if isinstance(texts, NoVoice)
         else Ability(available=True, engine=texts.engine),

@@ -28,7 +28,7 @@ from mend.server.speech import conversation as talking
 from mend.server.speech.chosen_way import way_meant
 from mend.server.speech.conversation import Act, EndReason, Saying, SpokenConversation
 from mend.server.speech.ear import NoEars
-from mend.server.speech.phrases import PROMISE_SORRY, SORRY
+from mend.server.speech.phrases import FIXED, sorry_name
 from mend.server.speech.question import Topic, open_topic, wait_until_over
 from mend.server.speech.talk import Talk
 from mend.server.speech.vocabulary import Vocabulary
@@ -121,10 +121,10 @@ class SpeechSocket(HelperConnection[HelperQuery]):
             self._parts.settings.subscriber_queue,
         )
         promised = topic.vocabulary is Vocabulary.PROMISE
-        aloud = Aloud(message, topic, audible=not self._silent)
-        sorry = PROMISE_SORRY if promised else SORRY
+        sorry = sorry_name(ears.language, promised=promised)
+        aloud = Aloud(message, topic, sorry, audible=not self._silent)
         self._talk = Talk(
-            SpokenConversation(topic.text, topic.help_text, time.monotonic, sorry),
+            SpokenConversation(topic.text, topic.help_text, time.monotonic, FIXED[sorry]),
             ears,
             lambda act: self._send(aloud.message(act)),
             over,
@@ -148,7 +148,7 @@ class SpeechSocket(HelperConnection[HelperQuery]):
 class Aloud:
     """How the acts of a conversation look on the wire, with the address of each sound."""
 
-    def __init__(self, about: Listen, topic: Topic, *, audible: bool) -> None:
+    def __init__(self, about: Listen, topic: Topic, sorry: str, *, audible: bool) -> None:
         base = f"/api/dialogues/{about.dialogue}/prompts/{about.prompt}/speech"
         promised = topic.vocabulary is Vocabulary.PROMISE
         self._ways = topic.ways
@@ -156,7 +156,7 @@ class Aloud:
         self._audio = {
             Saying.QUESTION: base,
             Saying.HELP: f"{fixed}/promise_help" if promised else f"{base}/help",
-            Saying.SORRY: f"{fixed}/promise_sorry" if promised else f"{fixed}/sorry",
+            Saying.SORRY: f"{fixed}/{sorry}",
         }
         self._audible = audible
 

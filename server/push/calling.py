@@ -10,7 +10,12 @@ from mend.server.background import Endless
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Journal, JournalClosedError
 from mend.server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
-from mend.server.push.messages import CallMessage, WithdrawnMessage, shortened
+from mend.server.push.messages import (
+    CallMessage,
+    WithdrawnMessage,
+    sentences_with_room,
+    shortened,
+)
 from mend.server.push.outbox import Letter
 from mend.server.push.subscription import PushSubscription
 from mend.server.push.subscriptions import PushSubscriptions
@@ -189,6 +194,7 @@ def _call(view: DialogueView, prompt: PromptView, *, urgent: bool) -> CallMessag
         run=view.run,
         robot=view.robot,
         text=shortened(prompt.text),
+        sentences=sentences_with_room(prompt.text, prompt.wordings),
         urgent=urgent,
     )
 

@@ -1,12 +1,16 @@
 """What is pushed to a device; the console's service worker shows it."""
 
+from collections.abc import Sequence
 from typing import Annotated, Literal
 from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from mend.server.journal.events import WordedSentence, Wording
+
 MOST_CHARS = 400
 """Of a text; a whole message may have some 3900 bytes (RFC 8291), and a character up to six."""
+MOST_BYTES_OF_SENTENCES = 1000
 
 
 class PushModel(BaseModel):
@@ -14,13 +18,17 @@ class PushModel(BaseModel):
 
 
 class CallMessage(PushModel):
-    """A robot asks. `urgent`: it does not wait, so that help is needed now or not at all."""
+    """A robot asks. `urgent`: it does not wait, so that help is needed now or not at all.
+
+    `sentences` are what `text` is made of, for other languages; empty where that has no room.
+    """
 
     type: Literal["call"] = "call"
     dialogue: UUID
     run: UUID
     robot: str
     text: str
+    sentences: list[WordedSentence] = []
     urgent: bool = False
 
 
@@ -41,6 +49,14 @@ class TrialMessage(PushModel):
 
 
 PushMessage = Annotated[CallMessage | WithdrawnMessage | TrialMessage, Field(discriminator="type")]
+
+
+def sentences_with_room(text: str, wordings: Sequence[Wording]) -> list[WordedSentence]:
+    """What a text is made of, where it fits into a message beside the text."""
+    for each in wordings:
+        if each.text == text and len(each.model_dump_json().encode()) <= MOST_BYTES_OF_SENTENCES:
+            return each.sentences
+    return []
 
 
 def shortened(text: str) -> str:

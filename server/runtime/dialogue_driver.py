@@ -6,6 +6,7 @@ from uuid import UUID, uuid4
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.script import Answer, Ask, Remark, Turn, Way
 from mend.dialogue.spoken import spoken
+from mend.dialogue.worded import joined, worded
 from mend.dialogue.wording import sentence
 from mend.errors import ConflictError, NotFoundError
 from mend.server.dialogues.answers import AnswerSource
@@ -315,26 +316,25 @@ class DialogueDriver:
         """The open question once more, worded as things are now."""
         script = self._context.state.scripts[dialogue.raised.issue]
         turns = dialogue.turns_after([], script, self._outlook(dialogue, proxy))
-        worded = next(each for each in turns if isinstance(each, Ask))
+        question = next(each for each in turns if isinstance(each, Ask))
         deadline = self._context.clock.now() + rung.answer_within_s
         to = ask.to if isinstance(rung, Mail) else rung.helper
         mailed = dialogue.mailed or isinstance(rung, Mail)
         standing = Standing((*dialogue.asked_of, to), mailed)
-        effect = f"{self._if_silent(standing)}{worded.timeout_effect}"
-        return self._make(dialogue).repeat(ask, worded, deadline, to, effect)
+        effect = joined(self._if_silent(standing), question.timeout_effect)
+        return self._make(dialogue).repeat(ask, question, deadline, to, effect)
 
     def _if_silent(self, standing: Standing) -> str:
         """What is done before silence counts as an answer, as the beginning of a sentence."""
         match next_rung(self._policy, standing, self._idle()):
             case Repeat():
-                done = "I ask again"
+                return worded("I ask again; if nobody answers at all:")
             case ToHelper(helper=helper):
-                done = f"I ask {helper}"
+                return worded("I ask {helper}; if nobody answers at all:", helper=helper)
             case Mail():
-                done = "I write to the operators"
+                return worded("I write to the operators; if nobody answers at all:")
             case _:
                 return ""
-        return f"{done}; if nobody answers at all: "
 
     # --- Turns --------------------------------------------------------------------------------
 

@@ -7,8 +7,10 @@ from uuid import UUID, uuid4
 
 from mend.dialogue.evidence import Change, LookOutcome
 from mend.dialogue.script import Ask, AwaitHelp, Close, CloseReason, Help, Remark, Turn, Way
+from mend.dialogue.worded import joined
 from mend.server.journal import events as ev
 from mend.server.runtime.unseen_help import Unseen
+from mend.server.runtime.wordings import wordings_of
 from mend.tasks.resolution import Resolution
 
 
@@ -43,7 +45,14 @@ class DialogueEvents:
         return ev.DialogueOpened(**self._fields(), scripted=scripted)
 
     def say(self, say: Remark) -> ev.Prompt:
-        return ev.Prompt(**self._fields(), prompt=uuid4(), version=1, kind="say", text=say.text)
+        return ev.Prompt(
+            **self._fields(),
+            prompt=uuid4(),
+            version=1,
+            kind="say",
+            text=say.text,
+            wordings=wordings_of(say.text),
+        )
 
     def ask(self, ask: Ask, deadline: float, to: str | None, if_silent: str) -> ev.Prompt:
         return ev.Prompt(
@@ -61,6 +70,7 @@ class DialogueEvents:
             to=to,
             headline=ask.headline,
             ways=[_option(way) for way in ask.ways],
+            wordings=wordings_of(*_texts_of(ask), if_silent),
         )
 
     def repeat(
@@ -187,7 +197,7 @@ class DialogueEvents:
                 case Remark():
                     events.append(self.say(turn))
                 case Ask():
-                    effect = f"{if_silent}{turn.timeout_effect}"
+                    effect = joined(if_silent, turn.timeout_effect)
                     events.append(self.ask(turn, ask_deadline, to, effect))
                 case AwaitHelp():
                     events.append(
@@ -246,6 +256,12 @@ def _option(way: Way) -> ev.WayOption:
         answers=list(way.answers),
         final=way.final,
     )
+
+
+def _texts_of(ask: Ask) -> tuple[str, ...]:
+    """All that is said of a question, but for what silence does."""
+    ways = (text for way in ask.ways for text in (way.deed, way.label, way.effect))
+    return (ask.text, ask.headline, ask.yes_effect, ask.no_effect, *ways)
 
 
 def _told(awaiting: ev.HelpAwaited, unseen: Unseen) -> dict[str, Any]:

@@ -231,6 +231,7 @@ def dialogue_view(dialogue: DialogueState) -> DialogueView:
             extensions_left=dialogue.extensions_left if prompt.kind == "ask" else 0,
             headline=prompt.headline,
             ways=prompt.ways,
+            wordings=prompt.wordings,
         ),
         awaiting=awaiting,
         answered_by=last_answer.helper if last_answer else None,

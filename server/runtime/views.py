@@ -15,6 +15,7 @@ from mend.server.journal.events import (
     MissingPart,
     UnseenPart,
     WayOption,
+    Wording,
 )
 from mend.server.runtime.leaf_words import LeafDeed
 from mend.tasks.autonomy import AutonomyLevel
@@ -72,6 +73,7 @@ class PromptView(View):
     extensions_left: int = 0
     headline: str = ""
     ways: list[WayOption] = []
+    wordings: list[Wording] = []
 
 
 class AwaitedHelp(View):

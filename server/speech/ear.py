@@ -21,7 +21,7 @@ from pydantic import BaseModel, ConfigDict
 from mend.errors import MendError, UnavailableError
 from mend.server.speech.commands import Command
 from mend.server.speech.speech_model import SpeechModelError, find_speech_model
-from mend.server.speech.vocabulary import Vocabulary
+from mend.server.speech.vocabulary import SpokenLanguage, Vocabulary
 
 log = logging.getLogger(__name__)
 
@@ -93,6 +93,9 @@ class Ears(Protocol):
     """Where ears come from."""
 
     @property
+    def language(self) -> SpokenLanguage: ...
+
+    @property
     def engine(self) -> str: ...
 
     def check_room(self) -> None:
@@ -113,20 +116,28 @@ class NoEars:
     """Nothing can be recognized; `why_not` is one sentence about it."""
 
     why_not: str
+    language: SpokenLanguage = SpokenLanguage.ENGLISH
 
 
-def choose_ears(wanted: bool, at_once: int, model: Path | None = None) -> "ProcessEars | NoEars":
+def choose_ears(
+    wanted: bool,
+    at_once: int,
+    model: Path | None = None,
+    language: SpokenLanguage = SpokenLanguage.ENGLISH,
+) -> "ProcessEars | NoEars":
     """The ears that this installation has; those with a `model` of the operator's hear better."""
     if not wanted:
         return NoEars("the setting 'speech_recognition' is off")
-    if find_spec("pocketsphinx") is None:
+    if language is not SpokenLanguage.ENGLISH and model is None:
+        return NoEars(f"the setting 'speech_model' names no model of the language '{language}'")
+    if language is SpokenLanguage.ENGLISH and find_spec("pocketsphinx") is None:
         return NoEars("pocketsphinx is not installed: pip install 'mend-robots[speech]'")
     try:
         if model is not None:
             find_speech_model(model)
     except SpeechModelError as error:
         return NoEars(str(error))
-    return ProcessEars(at_once, model)
+    return ProcessEars(at_once, model, language)
 
 
 class ProcessEars:
@@ -136,15 +147,27 @@ class ProcessEars:
     wait for theirs.
     """
 
-    def __init__(self, at_once: int, model: Path | None = None) -> None:
+    def __init__(
+        self,
+        at_once: int,
+        model: Path | None = None,
+        language: SpokenLanguage = SpokenLanguage.ENGLISH,
+    ) -> None:
         self._at_once = at_once
+        self._language = language
         self._model = None if model is None else model.resolve()
         self._taken = 0
         self._kept: list[RecognizerProcess] = []
         self._closed = False
 
     @property
+    def language(self) -> SpokenLanguage:
+        return self._language
+
+    @property
     def engine(self) -> str:
+        if self._language is not SpokenLanguage.ENGLISH:
+            return "moonshine"
         return "pocketsphinx" if self._model is None else "pocketsphinx and moonshine"
 
     def check_room(self) -> None:
@@ -178,7 +201,7 @@ class ProcessEars:
                 log.warning("a recognizer that was kept has gone; another is started")
             else:
                 return process
-        return await RecognizerProcess.start(vocabulary, self._model)
+        return await RecognizerProcess.start(vocabulary, self._model, self._language)
 
     async def _give_back(self, process: "RecognizerProcess") -> None:
         self._taken -= 1
@@ -227,10 +250,13 @@ class RecognizerProcess:
 
     @classmethod
     async def start(
-        cls, vocabulary: Vocabulary = Vocabulary.ANSWER, model: Path | None = None
+        cls,
+        vocabulary: Vocabulary = Vocabulary.ANSWER,
+        model: Path | None = None,
+        language: SpokenLanguage = SpokenLanguage.ENGLISH,
     ) -> Self:
         """Start one; returns when it is ready. Raises `EarLostError`."""
-        own_model = () if model is None else (str(model),)
+        own_model = () if model is None else (str(model), language)
         process = await asyncio.create_subprocess_exec(
             # -P: nothing is imported from wherever the service was started.
             sys.executable, "-P", "-m", "mend.server.speech.ear_process", vocabulary,

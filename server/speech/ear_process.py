@@ -18,7 +18,8 @@ from mend.server.speech.ear import AFRESH, BREAK, HEADER, EarReport
 from mend.server.speech.recognizer import Heard, Recognizer, SpeechBegan
 from mend.server.speech.speech_model import SherpaTranscriber, find_speech_model
 from mend.server.speech.sphinx_decoder import SphinxDecoder
-from mend.server.speech.vocabulary import Vocabulary
+from mend.server.speech.vocabulary import SpokenLanguage, Vocabulary
+from mend.server.speech.written_decoder import WrittenDecoder
 
 _VOCABULARIES = {code: vocabulary for vocabulary, code in AFRESH.items()}
 
@@ -31,16 +32,18 @@ def main() -> None:
     # Whatever a library prints must not come between the reports.
     os.dup2(2, 1)
     vocabulary: Vocabulary | None = Vocabulary(sys.argv[1])
-    decoder_of = cache(_agreeing(Path(sys.argv[2])) if len(sys.argv) > 2 else SphinxDecoder)
+    decoder_of = cache(_with_model(*sys.argv[2:]) if len(sys.argv) > 2 else SphinxDecoder)
     while vocabulary is not None:
         vocabulary = _converse(Recognizer(decoder_of(vocabulary)), sound, reports)
 
 
-def _agreeing(folder: Path) -> Callable[[Vocabulary], Decoder]:
-    """Decoders with an operator's speech model beside them, which is read once."""
-    transcriber = SherpaTranscriber(find_speech_model(folder))
+def _with_model(folder: str, language: str) -> Callable[[Vocabulary], Decoder]:
+    """Decoders with an operator's speech model, which is read once and alone hears German."""
+    transcriber = SherpaTranscriber(find_speech_model(Path(folder)))
 
     def decoder_of(vocabulary: Vocabulary) -> Decoder:
+        if language == SpokenLanguage.GERMAN:
+            return WrittenDecoder(transcriber, vocabulary)
         return AgreeingDecoder(SphinxDecoder(vocabulary), transcriber, vocabulary)
 
     return decoder_of

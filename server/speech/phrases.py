@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from mend.server.journal.events import AnswerOption, WayOption
 from mend.server.speech.chosen_way import way_meant
 from mend.server.speech.commands import Command
+from mend.server.speech.vocabulary import SpokenLanguage
 
 SORRY = "Sorry, please say yes or no."
 
@@ -14,14 +15,25 @@ PROMISE_HELP = (
     "You can also say: repeat, or stop."
 )
 
+SORRY_IN_GERMAN = "Sorry, please say in German: ja bitte, or nein danke."
+PROMISE_SORRY_IN_GERMAN = "Sorry, please say in German: ist fertig, or ich kann nicht."
+
 FIXED: Mapping[str, str] = {
     "sorry": SORRY,
     "commands": "You can say yes or no. You can also say: repeat, help, or stop.",
     "promise_sorry": PROMISE_SORRY,
     "promise_help": PROMISE_HELP,
+    "sorry_in_german": SORRY_IN_GERMAN,
+    "promise_sorry_in_german": PROMISE_SORRY_IN_GERMAN,
     "buttons": "I did not understand. Please use the buttons.",
 }
 """By the name under which their sound is served."""
+
+
+def sorry_name(language: SpokenLanguage, *, promised: bool) -> str:
+    """Which fixed phrase says that somebody was not understood."""
+    name = "promise_sorry" if promised else "sorry"
+    return name if language is SpokenLanguage.ENGLISH else f"{name}_in_german"
 
 
 _SAID = {Command.PLACE: "I'll place it myself", Command.LEAVE_OUT: "leave it out"}

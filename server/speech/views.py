@@ -1,10 +1,9 @@
 """What a service can say and hear, as its clients are told."""
 
-from typing import Literal
-
 from pydantic import BaseModel, ConfigDict
 
 from mend.server.speech.commands import Command
+from mend.server.speech.vocabulary import SpokenLanguage
 
 
 class Ability(BaseModel):
@@ -22,7 +21,8 @@ class SpeechView(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    language: Literal["en"] = "en"
+    language: SpokenLanguage = SpokenLanguage.ENGLISH
+    """In which people are understood."""
     voice: Ability
     recognition: Ability
     phrases: dict[str, str]

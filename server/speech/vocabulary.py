@@ -8,6 +8,13 @@ from mend.server.speech.promise_phrases import PROMISE_AMBIGUOUS, PROMISE_PHRASE
 from mend.server.speech.way_phrases import WAY_AMBIGUOUS, WAY_PHRASES
 
 
+class SpokenLanguage(StrEnum):
+    """In which language people are understood."""
+
+    ENGLISH = "en"
+    GERMAN = "de"
+
+
 class Vocabulary(StrEnum):
     """What is listened for."""
 

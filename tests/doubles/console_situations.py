@@ -359,6 +359,27 @@ async def settings(_: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def question_in_german(service: Service, open_page: OpenPage) -> Page:
+    page = await open_question(service, open_page)
+    await read_in_german(page)
+    await expect(page.get_by_role("button", name="JA")).to_be_visible()
+    return page
+
+
+async def run_in_german(service: Service, open_page: OpenPage) -> Page:
+    page = await finished_run(service, open_page)
+    await read_in_german(page)
+    await expect(page.get_by_role("heading", name="Baum")).to_be_visible()
+    return page
+
+
+async def read_in_german(page: Page) -> None:
+    """Have a page once more, in German."""
+    await page.evaluate("""() => localStorage.setItem("mend.language", '"de"')""")
+    await page.reload()
+    await expect(page.locator("html")).to_have_attribute("lang", "de")
+
+
 async def unknown(_: Service, open_page: OpenPage) -> Page:
     page = await open_page("/runs")
     await page.evaluate(
@@ -517,6 +538,8 @@ SITUATIONS: dict[str, Situation] = {
         touch_refused,
         fleet,
         settings,
+        question_in_german,
+        run_in_german,
         unknown,
         sign_in,
     )

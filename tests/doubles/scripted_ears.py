@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from mend.server.speech.commands import Command
 from mend.server.speech.ear import Ear, EarLostError, EarReport, TooManyConversationsError
-from mend.server.speech.vocabulary import Vocabulary
+from mend.server.speech.vocabulary import SpokenLanguage, Vocabulary
 from mend.server.speech.voice import VoiceError
 
 
@@ -70,6 +70,7 @@ class ScriptedEars:
     at_once: int = 8
     opened: list[ScriptedEar] = field(default_factory=list)
     engine: str = "scripted"
+    language: SpokenLanguage = SpokenLanguage.ENGLISH
 
     def check_room(self) -> None:
         if sum(not ear.closed for ear in self.opened) >= self.at_once:

@@ -168,7 +168,12 @@ async def _opening_pages(browser: Browser, url: str) -> AsyncIterator[OpenPage]:
     contexts: list[BrowserContext] = []
 
     async def open_page(
-        path: str = "/", helper: str = "anna", *, drawn: bool = False, **options: object
+        path: str = "/",
+        helper: str = "anna",
+        *,
+        drawn: bool = False,
+        connected: str = "Connected",
+        **options: object,
     ) -> Page:
         context = await browser.new_context(base_url=url, **options)
         contexts.append(context)
@@ -181,7 +186,7 @@ async def _opening_pages(browser: Browser, url: str) -> AsyncIterator[OpenPage]:
         page.on("pageerror", lambda error: mistakes.append(str(error)))
         page.on("console", lambda message: _note(message, mistakes))
         await page.goto(path)
-        await page.get_by_role("status").filter(has_text="Connected").wait_for()
+        await page.get_by_role("status").filter(has_text=connected).wait_for()
         return page
 
     yield open_page

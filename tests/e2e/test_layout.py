@@ -16,7 +16,7 @@ pytestmark = pytest.mark.asyncio(loop_scope="session")
 OVERLAPS = (Path(__file__).parent / "overlaps.js").read_text().strip()
 WIDTHS = (360, 768, 1440)
 # Nothing is under a bar that sticks to an edge by the chance of where the page is scrolled to.
-TALL = 4200
+TALL = 4800
 
 
 # Names of what moves are laid out anew three times a second: until then one may be over another.

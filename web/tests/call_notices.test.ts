@@ -3,8 +3,9 @@ import { describe, expect, it } from "vitest";
 import { deviceName } from "../src/calling/device_name";
 import { type State, verdict } from "../src/calling/findings";
 import { callNotice, OVER, overNotice } from "../src/calling/notices";
+import { takeSentences } from "../src/words/said";
 
-const CALL = { dialogue: "d", run: "r", robot: "pr2-1a2b3c4d", text: "May I go on?", urgent: false };
+const CALL = { dialogue: "d", run: "r", robot: "pr2-1a2b3c4d", text: "May I go on?", sentences: [], urgent: false };
 
 describe("a call", () => {
   it("names the robot without the number of its run, and says the question", () => {
@@ -23,6 +24,14 @@ describe("a call", () => {
 
   it("says so where help is needed now", () => {
     expect(callNotice({ ...CALL, urgent: true }, false).title).toBe("PR2 needs help now");
+  });
+
+  it("says the question in the reader's language, of what it is made of", () => {
+    takeSentences({ "Can you open the door?": "Können Sie die Tür öffnen?" }, {});
+    const sentences = [{ key: "Can you open the door?", args: {} }];
+    const { options } = callNotice({ ...CALL, text: "Can you open the door?", sentences }, false);
+    takeSentences({}, {});
+    expect(options.body).toBe("Können Sie die Tür öffnen?");
   });
 
   it("that is over is told under one tag, without a sound", () => {

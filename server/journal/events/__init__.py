@@ -27,6 +27,8 @@ from mend.server.journal.events.dialogue_events import (
     Resolved,
     UnseenHelp,
     WayOption,
+    WordedSentence,
+    Wording,
 )
 from mend.server.journal.events.event import (
     NO_RUN,
@@ -218,5 +220,7 @@ __all__ = [
     "UnseenPart",
     "WayFound",
     "WayOption",
+    "WordedSentence",
+    "Wording",
     "any_event",
 ]

@@ -38,6 +38,23 @@ class WayOption(EventModel):
     final: bool = False
 
 
+class WordedSentence(EventModel):
+    """A sentence, or a part of one: `key` is its English text with fields, `args` fills them.
+
+    What fills a field is a text that stays as it is in every language, or sentences in turn.
+    """
+
+    key: str
+    args: dict[str, "str | list[WordedSentence]"] = {}
+
+
+class Wording(EventModel):
+    """What an English text of a prompt is made of, so that others may read it in their language."""
+
+    text: str
+    sentences: list[WordedSentence]
+
+
 class DialogueEvent(NodeEvent):
     """An event of one dialogue."""
 
@@ -61,7 +78,7 @@ class Prompt(DialogueEvent):
     that it is meant for first, None for everyone. `deadline` is in the run's clock, and
     `timeout_effect` says what follows if nobody answers until then. `headline` is what is asked of
     the helper in few words, and `ways` are all that may be chosen; both are empty where a question
-    takes a yes or a no alone.
+    takes a yes or a no alone. `wordings` are of all these texts that have one.
     """
 
     type: Literal["prompt"] = "prompt"
@@ -75,6 +92,7 @@ class Prompt(DialogueEvent):
     to: str | None = None
     headline: str = ""
     ways: list[WayOption] = []
+    wordings: list[Wording] = []
 
 
 class FirstLook(DialogueEvent):

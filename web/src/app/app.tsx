@@ -12,6 +12,7 @@ import { besideRobot, helperName, pushOn } from "../state/preferences";
 import { SoundBar } from "../calling/sound_bar";
 import { later } from "./later";
 import { type Route, route } from "./router";
+import { t } from "../words/words";
 import "./app.css";
 
 const RunView = later(() => import("../run/run_view").then((module) => module.RunView));
@@ -34,7 +35,7 @@ export function App() {
   useEffect(() => {
     if (session.value === "in" && pushOn.value) void import("../calling/push").then((push) => push.callThisDeviceStill());
   }, [session.value, helperName.value]);
-  if (session.value === "unknown") return <p class="app-waiting">Looking for the service …</p>;
+  if (session.value === "unknown") return <p class="app-waiting">{t("Looking for the service …")}</p>;
   if (session.value !== "in") return <SignIn />;
   const shown = route.value;
   // Who stands before a robot is no helper of others: no questions, and no way to other pages.
@@ -48,7 +49,7 @@ export function App() {
   return (
     <>
       <a class="skip" href="#main">
-        Skip to content
+        {t("Skip to content")}
       </a>
       <div class="top">
         <Header />
@@ -97,9 +98,9 @@ function View({ shown }: { shown: Exclude<Route, { view: "touch" }> }) {
     case "unknown":
       return (
         <section class="page">
-          <h1>There is nothing at {shown.path}</h1>
+          <h1>{t("There is nothing at {path}", { path: shown.path })}</h1>
           <p>
-            <a href="/">To the questions</a>
+            <a href="/">{t("To the questions")}</a>
           </p>
         </section>
       );

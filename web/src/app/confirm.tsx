@@ -1,6 +1,7 @@
 // A question before something that cannot be taken back.
 import type { ComponentChildren } from "preact";
 import { useEffect, useId, useRef } from "preact/hooks";
+import { t } from "../words/words";
 import "./confirm.css";
 
 interface ConfirmProps {
@@ -15,7 +16,7 @@ interface ConfirmProps {
   onCancel: () => void;
 }
 
-export function Confirm({ title, children, confirm, cancel = "Cancel", harmless = false, onConfirm, onCancel }: ConfirmProps) {
+export function Confirm({ title, children, confirm, cancel = t("Cancel"), harmless = false, onConfirm, onCancel }: ConfirmProps) {
   const dialog = useRef<HTMLDialogElement>(null);
   const id = useId();
   useEffect(() => dialog.current?.showModal(), []);

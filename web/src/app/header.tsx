@@ -5,12 +5,13 @@ import { questions } from "../state/questions";
 import { helperName } from "../state/preferences";
 import { connection } from "../state/service";
 import { route } from "./router";
+import { t } from "../words/words";
 
 const CONNECTION: Readonly<Record<ConnectionState, string>> = {
-  connecting: "Connecting …",
-  connected: "Connected",
-  lost: "Connection lost, trying again …",
-  closed: "Not connected",
+  connecting: t("Connecting …"),
+  connected: t("Connected"),
+  lost: t("Connection lost, trying again …"),
+  closed: t("Not connected"),
 };
 
 export function Connection() {
@@ -29,31 +30,31 @@ export function Header() {
   const count = questions.value.length;
   return (
     <header class="header">
-      <a class="brand" href="/" aria-label="Mend, to the questions">
+      <a class="brand" href="/" aria-label={t("Mend, to the questions")}>
         <img src="/icon.svg" alt="" width="28" height="28" />
         <span>Mend</span>
       </a>
-      <nav aria-label="Main">
+      <nav aria-label={t("Main")}>
         <Place href="/" current={view === "questions"}>
-          Questions
+          {t("Questions")}
           {count > 0 && <span class="count">{count}</span>}
         </Place>
         <Place href="/runs" current={view === "runs" || view === "run" || view === "start"}>
-          Runs
+          {t("Runs")}
         </Place>
         <Place href="/issues" current={view === "issues" || view === "statistics"}>
-          Issues
+          {t("Issues")}
         </Place>
         <Place href="/trees" current={TREE_VIEWS.has(view)}>
-          Task trees
+          {t("Task trees")}
         </Place>
         {(view === "requests" || view === "fleet" || (fleets.value?.length ?? 0) > 0) && (
           <>
             <Place href="/fleet" current={view === "fleet"}>
-              Fleet
+              {t("Fleet")}
             </Place>
             <Place href="/requests" current={view === "requests"}>
-              Requests
+              {t("Requests")}
             </Place>
           </>
         )}

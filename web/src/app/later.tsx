@@ -1,14 +1,21 @@
 // A view whose code is loaded when it is first shown, so that the answering path stays small.
 import { type ComponentType, createElement } from "preact";
 import { useEffect, useState } from "preact/hooks";
+import { t } from "../words/words";
+import { loadOtherWords } from "../words/load";
 
-export function later<P extends object>(load: () => Promise<ComponentType<P>>): ComponentType<P> {
+/** `words` brings what the view says, where the answering path does not say it already. */
+export function later<P extends object>(
+  load: () => Promise<ComponentType<P>>,
+  words: () => Promise<void> = loadOtherWords,
+): ComponentType<P> {
   let loaded: ComponentType<P> | null = null;
   return function Later(props: P) {
     const [state, setState] = useState<"loading" | "ready" | "failed">(loaded ? "ready" : "loading");
     useEffect(() => {
       if (loaded !== null) return;
-      load().then(
+      // What stands in its modules is said in words that have to be there first.
+      words().then(load).then(
         (component) => {
           loaded = component;
           setState("ready");
@@ -17,7 +24,7 @@ export function later<P extends object>(load: () => Promise<ComponentType<P>>): 
       );
     }, []);
     if (loaded !== null) return createElement(loaded, props);
-    if (state === "failed") return <p class="page">This view could not be loaded. Is the service there?</p>;
-    return <p class="page quiet">Loading …</p>;
+    if (state === "failed") return <p class="page">{t("This view could not be loaded. Is the service there?")}</p>;
+    return <p class="page quiet">{t("Loading …")}</p>;
   };
 }

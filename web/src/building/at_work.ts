@@ -4,6 +4,7 @@ import { ended, type RunState } from "../run/fold";
 import { plain } from "../tree/words";
 import { type Plan, scenePlace } from "./plan";
 import { floorOn, nearestPlace, type Point } from "./whereabouts";
+import { t } from "../words/words";
 
 export type Activity = "driving" | "waiting" | "asking" | "idle";
 
@@ -68,10 +69,10 @@ export function activityOf({ task }: AtWork, moving: boolean): Activity {
 }
 
 export const ACTIVITY_WORDS: Readonly<Record<Activity, string>> = {
-  driving: "Driving",
-  waiting: "Waiting",
-  asking: "Asking",
-  idle: "Idle",
+  driving: t("Driving"),
+  waiting: t("Waiting"),
+  asking: t("Asking"),
+  idle: t("Idle"),
 };
 
 /** Beside the word and the colour, for those who do not tell colours. */
@@ -85,15 +86,15 @@ export const ACTIVITY_SIGNS: Readonly<Record<Activity, string>> = {
 /** "drives to 101", as a clause after its name. */
 export function doingInWords(robot: AtWork, activity: Activity, here: string | null): string {
   const { goal, leaf, task } = robot;
-  const there = goal === null ? (leaf ?? "its goal") : toGoal(goal, here);
-  if (task === "over") return "has ended its work";
-  if (activity === "idle") return "has nothing to do";
-  if (activity === "asking") return `asks, on its way to ${there}`;
-  if (task === "helped") return `waits for help, on its way to ${there}`;
-  return activity === "driving" ? `drives to ${there}` : `waits on its way to ${there}`;
+  const there = goal === null ? (leaf ?? t("its goal")) : toGoal(goal, here);
+  if (task === "over") return t("has ended its work");
+  if (activity === "idle") return t("has nothing to do");
+  if (activity === "asking") return t("asks, on its way to {there}", { there });
+  if (task === "helped") return t("waits for help, on its way to {there}", { there });
+  return activity === "driving" ? t("drives to {there}", { there }) : t("waits on its way to {there}", { there });
 }
 
 /** A goal by its name, and its floor where that is another one. */
 export function toGoal({ name, floor }: Goal, here: string | null): string {
-  return floor === null || floor === here ? name : `${name} on ${floor}`;
+  return floor === null || floor === here ? name : t("{name} on {floor}", { name, floor });
 }

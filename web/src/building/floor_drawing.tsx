@@ -3,6 +3,7 @@ import type { ComponentChildren } from "preact";
 import { useMemo } from "preact/hooks";
 import type { PlaceKind, PlanFloor, Segment } from "./plan";
 import type { Sight } from "./sight";
+import { t } from "../words/words";
 
 const KINDS: readonly PlaceKind[] = ["room", "charger", "parking", "elevator"];
 
@@ -51,18 +52,18 @@ function lines(segments: readonly Segment[]): string {
 }
 
 const KIND_WORDS: Readonly<Record<PlaceKind, string>> = {
-  waypoint: "waypoint",
-  room: "room",
-  charger: "charger",
-  parking: "parking",
-  elevator: "elevator",
+  waypoint: t("waypoint"),
+  room: t("room"),
+  charger: t("charger"),
+  parking: t("parking"),
+  elevator: t("elevator"),
 };
 
 /** What the signs mean that a floor has. */
 export function FloorLegend({ floor }: { floor: PlanFloor }) {
   const kinds = KINDS.filter((kind) => floor.places.some((each) => each.kind === kind));
   return (
-    <ul class="plan-legend small quiet" aria-label="Signs of the plan">
+    <ul class="plan-legend small quiet" aria-label={t("Signs of the plan")}>
       {kinds.map((kind) => (
         <li key={kind}>
           <svg width="16" height="16" viewBox="-8 -8 16 16" aria-hidden="true">
@@ -75,9 +76,7 @@ export function FloorLegend({ floor }: { floor: PlanFloor }) {
         <li>
           <svg width="16" height="16" viewBox="-8 -8 16 16" aria-hidden="true">
             <path class="plan-doors people" d="M-7 0L7 0" />
-          </svg>
-          door
-        </li>
+          </svg>{t("door")}</li>
       )}
     </ul>
   );

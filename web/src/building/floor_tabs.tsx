@@ -3,6 +3,7 @@ import { useRef } from "preact/hooks";
 import "../run/tabs.css";
 import type { Plan, PlanFloor } from "./plan";
 import type { SeenRobot } from "./seen_robots";
+import { t } from "../words/words";
 
 interface FloorTabsProps {
   plan: Plan;
@@ -28,7 +29,7 @@ export function FloorTabs({ plan, shown, seen, onChoose }: FloorTabsProps) {
     bar.current?.querySelector<HTMLElement>(`#${floorTab(plan, floor)}`)?.focus();
   };
   return (
-    <div class="tabs plan-tabs" role="tablist" aria-label="Floors" ref={bar} onKeyDown={onKeyDown}>
+    <div class="tabs plan-tabs" role="tablist" aria-label={t("Floors")} ref={bar} onKeyDown={onKeyDown}>
       {floors.map((floor) => (
         <button
           key={floor.name}
@@ -55,10 +56,10 @@ function Robots({ there }: { there: readonly SeenRobot[] }) {
   return (
     <span class={`plan-count ${asks ? "asking" : ""}`}>
       {there.length}
-      <span class="unseen"> {there.length === 1 ? "robot" : "robots"}</span>
+      <span class="unseen"> {there.length === 1 ? t("robot") : t("robots")}</span>
       {asks && (
         <>
-          ?<span class="unseen"> one asks</span>
+          ?<span class="unseen"> {t("one asks")}</span>
         </>
       )}
     </span>

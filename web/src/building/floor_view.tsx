@@ -10,6 +10,7 @@ import type { SeenRobot } from "./seen_robots";
 import { useSteady } from "./use_floor";
 import { useSight, useSize } from "./use_sight";
 import { ViewButtons } from "./view_buttons";
+import { t } from "../words/words";
 import "./building.css";
 
 export function useFloorView(floor: PlanFloor) {
@@ -49,10 +50,10 @@ export function FloorView({ plan, floor, view, seen = [], heading, onFloor, chil
           class="plan-view"
           role="group"
           tabIndex={0}
-          aria-label={`Floor ${floor.name}: arrow keys move it, plus and minus zoom, 0 shows all of it`}
+          aria-label={t("Floor {name}: arrow keys move it, plus and minus zoom, 0 shows all of it", { name: floor.name })}
           {...controls.handlers}
         >
-          <FloorDrawing floor={floor} sight={sight} label={`Plan of ${floor.name}`}>
+          <FloorDrawing floor={floor} sight={sight} label={t("Plan of {name}", { name: floor.name })}>
             <PlaceNames names={names} sight={sight} hidden={hidden} />
           </FloorDrawing>
           {children}

@@ -13,6 +13,7 @@ import { centred, drawnAt } from "./sight";
 import { createStandings, howLong, OLD_S, type Standing } from "./standing";
 import { useSize } from "./use_sight";
 import { floorShownAt, nearestPlace, whereInWords } from "./whereabouts";
+import { parts, t } from "../words/words";
 import "./building.css";
 
 const LOOK_MS = 500;
@@ -25,7 +26,7 @@ export function PlaceMap({ run, robot }: { run: string; robot: string }) {
   const plan = usePlan(run);
   const standing = useStanding(run, robot);
   if (plan === null) return null;
-  if (standing === null) return <p class="small quiet">{robotName(robot)} has not said where it is.</p>;
+  if (standing === null) return <p class="small quiet">{t("{robot} has not said where it is.", { robot: robotName(robot) })}</p>;
   return <Map plan={plan} standing={standing} name={robotName(robot)} />;
 }
 
@@ -48,7 +49,11 @@ function Map({ plan, standing, name }: { plan: Plan; standing: Standing; name: s
   return (
     <figure class="place-map">
       <div class="plan-view" ref={view}>
-        <FloorDrawing floor={floor} sight={sight} label={`Map of ${floor.name}: ${name} is ${where}`}>
+        <FloorDrawing
+          floor={floor}
+          sight={sight}
+          label={t("Map of {floor}: {robot} is {where}", { floor: floor.name, robot: name, where })}
+        >
           <PlaceNames names={names} sight={sight} hidden={namesHidden(names, sight, size, [mark, FLOOR_SIGN])} />
           <g class={`plan-robot ${seen_s === null ? "robot-asking" : "robot-not-seen"}`}>
             <g class="plan-mark" transform={`translate(${at.x} ${at.y}) rotate(${(-standing.yaw * 180) / Math.PI}) scale(${radius})`}>
@@ -60,8 +65,13 @@ function Map({ plan, standing, name }: { plan: Plan; standing: Standing; name: s
         <span class="place-floor">{floor.name}</span>
       </div>
       <figcaption>
-        <strong>{name}</strong> {seen_s === null ? "is" : "was"} {where}
-        {seen_s !== null && <>: last seen {howLong(seen_s)} ago</>}.
+        {seen_s === null
+          ? parts("{robot} is {where}.", { robot: <strong>{name}</strong>, where })
+          : parts("{robot} was {where}: last seen {duration} ago.", {
+              robot: <strong>{name}</strong>,
+              where,
+              duration: howLong(seen_s),
+            })}
       </figcaption>
     </figure>
   );

@@ -12,6 +12,7 @@ import { type Marks, RobotMarks } from "./robot_marks";
 import type { SeenRobot } from "./seen_robots";
 import { useFloor } from "./use_floor";
 import { type Positions, useRobots } from "./use_robots";
+import { t } from "../words/words";
 
 interface PlanPanelProps {
   plan: Plan;
@@ -51,7 +52,7 @@ export function PlanPanel({ plan, run, moment, state }: PlanPanelProps) {
     going.current = null;
     if (at !== undefined) controls.show(at);
   });
-  const title = plan.floors.length > 1 ? "Building" : `Building: ${floor.name}`;
+  const title = plan.floors.length > 1 ? t("Building") : t("Building: {name}", { name: floor.name });
   return (
     <section class="panel plan" aria-labelledby="plan-title">
       <FloorView {...{ plan, floor, seen, view }} onFloor={setFloor} heading={<h2 id="plan-title">{title}</h2>}>
@@ -65,13 +66,13 @@ export function PlanPanel({ plan, run, moment, state }: PlanPanelProps) {
 
 function stateSentence(source: PoseSource, moment: Moment, seen: readonly SeenRobot[]): string {
   const known = seen.some(({ where }) => where !== null);
-  if (!moment.live.value) return known ? "" : "Nothing was recorded of this moment.";
+  if (!moment.live.value) return known ? "" : t("Nothing was recorded of this moment.");
   switch (source.state.value) {
     case "lost":
-      return "The connection is lost: this is the last that is known.";
+      return t("The connection is lost: this is the last that is known.");
     case "refused":
-      return "The service does not show where this run’s robots are.";
+      return t("The service does not show where this run’s robots are.");
     default:
-      return known ? "" : "Waiting for the robots to say where they are …";
+      return known ? "" : t("Waiting for the robots to say where they are …");
   }
 }

@@ -4,6 +4,7 @@ import { type Activity, activityOf, type AtWork, doingInWords } from "./at_work"
 import type { Plan } from "./plan";
 import { howLong, type Standing } from "./standing";
 import { floorShownAt, whereInWords } from "./whereabouts";
+import { t } from "../words/words";
 
 /** So much of a goal's name is under that of a robot; all of it is in the list. */
 const GOAL_CHARACTERS = 18;
@@ -56,15 +57,15 @@ function seenRobot(robot: AtWork, standing: Standing | null, { plan, past, atLea
 }
 
 function unseenSince(robot: AtWork, { seen_s }: Standing, past: boolean, atLeast: boolean): string | null {
-  if (seen_s === null) return robot.lost && !past ? "connection lost" : null;
-  const since = `${atLeast ? "more than " : ""}${howLong(seen_s)}`;
-  return past ? `last seen ${since} before` : `last seen ${since} ago`;
+  if (seen_s === null) return robot.lost && !past ? t("connection lost") : null;
+  const since = atLeast ? t("more than {duration}", { duration: howLong(seen_s) }) : howLong(seen_s);
+  return past ? t("last seen {since} before", { since }) : t("last seen {since} ago", { since });
 }
 
 function shortly({ goal, task }: AtWork, activity: Activity): string {
   const there = goal === null ? "" : ` → ${shortened(goal.name, GOAL_CHARACTERS)}`;
-  if (activity === "asking") return "asks";
-  if (task === "helped") return "waits for help";
+  if (activity === "asking") return t("asks");
+  if (task === "helped") return t("waits for help");
   if (activity === "idle") return "";
-  return activity === "driving" ? there.trim() : `waits${there}`;
+  return activity === "driving" ? there.trim() : `${t("waits")}${there}`;
 }

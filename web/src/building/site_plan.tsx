@@ -3,6 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import * as rest from "../wire/rest";
 import { FloorView, useFloorView } from "./floor_view";
 import { type Plan, planOf } from "./plan";
+import { t } from "../words/words";
 
 export function SitePlan({ scene }: { scene: string }) {
   const [plan, setPlan] = useState<Plan | null>(null);
@@ -26,7 +27,7 @@ function Floors({ plan }: { plan: Plan }) {
   const floor = chosen ?? plan.floors[0]!;
   const view = useFloorView(floor);
   return (
-    <section class="plan" aria-label={`Building ${plan.name}`}>
+    <section class="plan" aria-label={t("Building {name}", { name: plan.name })}>
       <FloorView plan={plan} floor={floor} view={view} onFloor={setChosen} />
     </section>
   );

@@ -1,17 +1,18 @@
 // What can be done with a plan by button.
 import type { SightControls } from "./use_sight";
+import { t } from "../words/words";
 
 export function ViewButtons({ controls }: { controls: SightControls }) {
   return (
-    <div class="plan-tools" role="group" aria-label="Plan">
-      <button type="button" class="small-button" aria-label="Zoom in" onClick={controls.zoomIn}>
+    <div class="plan-tools" role="group" aria-label={t("Plan")}>
+      <button type="button" class="small-button" aria-label={t("Zoom in")} onClick={controls.zoomIn}>
         +
       </button>
-      <button type="button" class="small-button" aria-label="Zoom out" onClick={controls.zoomOut}>
+      <button type="button" class="small-button" aria-label={t("Zoom out")} onClick={controls.zoomOut}>
         −
       </button>
       <button type="button" class="small-button" onClick={controls.fit}>
-        Fit
+        {t("Fit")}
       </button>
     </div>
   );

@@ -1,5 +1,6 @@
 // On which floor and near which place something is, in words too.
 import type { Plan, PlanFloor, PlanPlace } from "./plan";
+import { t } from "../words/words";
 
 /** What is so near to a floor's height is on it, as the service has it. */
 export const ON_FLOOR_M = 0.5;
@@ -42,14 +43,17 @@ export function whereInWords(plan: Plan, at: Point): string {
   const floor = floorOn(plan, at.z);
   if (floor === null) return betweenFloors(plan, at.z);
   const place = nearestPlace(floor, at);
-  if (place === null) return `on ${floor.name}`;
-  const near = Math.hypot(place.x - at.x, place.y - at.y) <= AT_M ? "at" : "near";
-  return `on ${floor.name}, ${near} ${place.name}`;
+  if (place === null) return t("on {name}", { name: floor.name });
+  const names = { floor: floor.name, place: place.name };
+  const near = Math.hypot(place.x - at.x, place.y - at.y);
+  return near <= AT_M ? t("on {floor}, at {place}", names) : t("on {floor}, near {place}", names);
 }
 
 function betweenFloors(plan: Plan, z: number): string {
   const below = plan.floors.findLast(({ height }) => height < z);
   const above = plan.floors.find(({ height }) => height > z);
-  if (below === undefined) return above === undefined ? "on no floor" : `below ${above.name}`;
-  return above === undefined ? `above ${below.name}` : `between ${below.name} and ${above.name}`;
+  if (below === undefined) return above === undefined ? t("on no floor") : t("below {name}", { name: above.name });
+  return above === undefined
+    ? t("above {name}", { name: below.name })
+    : t("between {below} and {above}", { below: below.name, above: above.name });
 }

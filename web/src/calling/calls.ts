@@ -5,6 +5,7 @@ import { type Question, questions, together } from "../state/questions";
 import { isTurnOf } from "../question/turn";
 import { Ringer, ringing } from "./ringing";
 import { playCall } from "./sounds";
+import { t } from "../words/words";
 
 const putOff = signal<ReadonlySet<string>>(new Set());
 
@@ -43,7 +44,7 @@ effect(() => {
 effect(() => {
   const count = questions.value.filter((each) => isTurnOf(helperName.value, each)).length;
   const urgent = rings.value.some((each) => each.urgent);
-  document.title = `${count > 0 ? `(${count}) ` : ""}${urgent ? "Help now! " : ""}Mend`;
+  document.title = `${count > 0 ? `(${count}) ` : ""}${urgent ? t("Help now!") : ""}Mend`;
   if (count > 0) void navigator.setAppBadge?.(count).catch(() => undefined);
   else void navigator.clearAppBadge?.().catch(() => undefined);
 });

@@ -1,6 +1,8 @@
 // How a call looks as a notification: the same whether it was pushed or the page itself shows it.
 import { robotName } from "../question/fault_words";
 import type { CallMessage, WithdrawnMessage } from "../wire/types";
+import { t } from "../words/words";
+import { learn, said } from "../words/said";
 
 /** What notifications can have beyond what TypeScript knows. */
 export interface NoticeOptions extends NotificationOptions {
@@ -21,11 +23,12 @@ const LOOKS = { icon: "/icons/192.png", badge: "/icons/badge.png" };
 /** `quiet`: the page is before somebody's eyes, and makes itself heard. */
 export function callNotice(call: Omit<CallMessage, "type">, quiet: boolean): Notice {
   const robot = robotName(call.robot);
+  learn([{ text: call.text, sentences: call.sentences }]);
   return {
-    title: call.urgent ? `${robot} needs help now` : `${robot} asks for help`,
+    title: call.urgent ? t("{robot} needs help now", { robot }) : t("{robot} asks for help", { robot }),
     options: {
       ...LOOKS,
-      body: call.text,
+      body: said(call.text),
       tag: call.dialogue,
       renotify: true,
       requireInteraction: true,
@@ -38,13 +41,13 @@ export function callNotice(call: Omit<CallMessage, "type">, quiet: boolean): Not
 }
 
 export function overNotice({ robot, text }: WithdrawnMessage): Notice {
-  const title = robot === "" ? "You are not needed now" : `${robotName(robot)}: you are not needed now`;
-  return { title, options: { ...LOOKS, body: text, tag: OVER, silent: true } };
+  const title = robot === "" ? t("You are not needed now") : t("{robot}: you are not needed now", { robot: robotName(robot) });
+  return { title, options: { ...LOOKS, body: said(text), tag: OVER, silent: true } };
 }
 
 export function trialNotice(): Notice {
   return {
-    title: "Mend can call this device",
-    options: { ...LOOKS, body: "A push has come all the way. This is how a robot's question looks.", tag: TRIAL },
+    title: t("Mend can call this device"),
+    options: { ...LOOKS, body: t("A push has come all the way. This is how a robot's question looks."), tag: TRIAL },
   };
 }

@@ -2,11 +2,12 @@
 import type { Question } from "../state/questions";
 import { callNotice } from "./notices";
 import { whyNoWorker, worker } from "./registration";
+import { said } from "../words/said";
 
 export async function notify(question: Question): Promise<void> {
   const { dialogue, run, robot } = question;
-  const text = question.prompt?.text ?? "";
-  const { title, options } = callNotice({ dialogue, run, robot, text, urgent: !question.interrupts }, true);
+  const text = said(question.prompt?.text ?? "");
+  const { title, options } = callNotice({ dialogue, run, robot, text, sentences: [], urgent: !question.interrupts }, true);
   try {
     // Browsers of telephones show those of a service worker alone.
     if (whyNoWorker() === null) await (await worker()).showNotification(title, options);

@@ -4,6 +4,7 @@ import * as rest from "../wire/rest";
 import type { DeviceView } from "../wire/types";
 import { deviceName } from "./device_name";
 import { whyNoWorker, worker } from "./registration";
+import { t } from "../words/words";
 
 /** Why this device cannot be called while the page is closed, as a sentence; null where it can. */
 export function whyNoPush(): string | null {
@@ -11,7 +12,7 @@ export function whyNoPush(): string | null {
   if (why !== null) return why;
   if (!("PushManager" in window) || !("Notification" in window)) {
     const apple = /iPhone|iPad/.test(navigator.userAgent);
-    return apple ? "On an iPhone or iPad, first put this page on the home screen, and open it from there." : "This browser has no push.";
+    return apple ? t("On an iPhone or iPad, first put this page on the home screen, and open it from there.") : t("This browser has no push.");
   }
   return null;
 }
@@ -21,10 +22,10 @@ export async function callThisDevice(): Promise<DeviceView> {
   const why = whyNoPush();
   if (why !== null) throw new Error(why);
   if ((await Notification.requestPermission()) !== "granted") {
-    throw new Error("This browser does not let this page notify you. Its site settings can change that.");
+    throw new Error(t("This browser does not let this page notify you. Its site settings can change that."));
   }
   const { available, key } = await rest.push(helperName.value);
-  if (!available) throw new Error("This service pushes to nobody: its operators have switched that off.");
+  if (!available) throw new Error(t("This service pushes to nobody: its operators have switched that off."));
   const device = await rest.addPushSubscription(await subscription(key), deviceName(navigator.userAgent), helperName.value);
   pushOn.value = true;
   return device;
@@ -36,7 +37,7 @@ async function subscription(key: string): Promise<PushSubscription> {
   if (found !== null && keyOf(found) === key) return found;
   await found?.unsubscribe();
   return pushManager.subscribe({ userVisibleOnly: true, applicationServerKey: key }).catch((error: Error) => {
-    throw new Error(`This browser's push service does not take this device (${error.message}).`);
+    throw new Error(t("This browser's push service does not take this device ({message}).", { message: error.message }));
   });
 }
 

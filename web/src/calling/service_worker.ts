@@ -2,6 +2,8 @@
 // It answers no request and keeps no file, so that the console is never older than the service.
 import type { PushMessage, WithdrawnMessage } from "../wire/types";
 import { callNotice, type Notice, OVER, overNotice, trialNotice } from "./notices";
+import { addWords, type Words } from "../words/words";
+import { takeSentences } from "../words/said";
 
 interface Waiting extends Event {
   waitUntil(work: Promise<unknown>): void;
@@ -19,6 +21,7 @@ interface Page {
   postMessage(message: unknown): void;
 }
 declare const self: EventTarget & {
+  location: Location;
   registration: ServiceWorkerRegistration;
   skipWaiting(): Promise<void>;
   clients: {
@@ -27,6 +30,13 @@ declare const self: EventTarget & {
     openWindow(address: string): Promise<unknown>;
   };
 };
+
+// All languages are here: a worker loads nothing later.
+const TEXTS = import.meta.glob<Words>("../../texts/*/{notices,sentences,clauses}.json", { eager: true, import: "default" });
+const language = new URLSearchParams(self.location.search).get("language") ?? "en";
+const textsIn = (file: string) => TEXTS[`../../texts/${language}/${file}.json`] ?? {};
+addWords(textsIn("notices"));
+takeSentences(textsIn("sentences"), textsIn("clauses"));
 
 const pages = () => self.clients.matchAll({ type: "window", includeUncontrolled: true });
 const show = ({ title, options }: Notice) => self.registration.showNotification(title, options);

@@ -2,6 +2,7 @@
 import { besideRobot, soundOn } from "../state/preferences";
 import { rings } from "./calls";
 import { soundBlocked, unlock } from "./sounds";
+import { t } from "../words/words";
 import "./sound_bar.css";
 
 export function SoundBar() {
@@ -11,10 +12,10 @@ export function SoundBar() {
       {matters && (
         <>
           <p>
-            <strong>You do not hear this page yet.</strong> Browsers wait until it is touched once.
+            <strong>{t("You do not hear this page yet.")}</strong> {t("Browsers wait until it is touched once.")}
           </p>
           <button type="button" class="button" onClick={() => void unlock()}>
-            Turn the sound on
+            {t("Turn the sound on")}
           </button>
         </>
       )}

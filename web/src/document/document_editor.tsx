@@ -13,6 +13,7 @@ import { SaveForm } from "./save_form";
 import { type Jump, TextEditor } from "./text_editor";
 import { useUnsaved } from "./unsaved";
 import { type EditedText, useText } from "./use_text";
+import { t } from "../words/words";
 import "./document_editor.css";
 
 /** What the drawing beside the text knows of it, and can do to it. */
@@ -43,7 +44,7 @@ export function DocumentEditor({ kind, name, drawing }: DocumentEditorProps) {
     begin(kind, name).then(setBeginning, (error: Error) => setMistake(error.message));
   }, [name]);
   if (beginning !== null) return <Editor kind={kind} document={name} drawing={drawing} {...beginning} />;
-  return <p class={mistake === "" ? "page quiet" : "page mistake"}>{mistake || "Loading …"}</p>;
+  return <p class={mistake === "" ? "page quiet" : "page mistake"}>{mistake || t("Loading …")}</p>;
 }
 
 async function begin(kind: DocumentKind, document: string | null): Promise<Beginning> {
@@ -53,13 +54,15 @@ async function begin(kind: DocumentKind, document: string | null): Promise<Begin
   const { text, name, built_in } = await kind.read(document);
   if (!built_in) return { saved: { text, name, note: "" }, draft, others };
   const copy = freeName(name, new Set(others.map((each) => each.name)));
-  const note = `This is a copy of '${name}', which is built in and stays as it is.`;
+  const note = t("This is a copy of '{name}', which is built in and stays as it is.", { name });
   return { saved: { text: renamed(text, copy), name: copy, note }, draft, others };
 }
 
 function titleOf({ said }: DocumentKind, document: string | null, others: readonly DocumentSummary[]): string {
-  if (document === null) return `New ${said}`;
-  return others.some((each) => each.name === document && each.built_in) ? `Copy of ${document}` : `Edit ${document}`;
+  if (document === null) return t("New: {kind}", { kind: said });
+  return others.some((each) => each.name === document && each.built_in)
+    ? t("Copy of {document}", { document })
+    : t("Edit {document}", { document });
 }
 
 type EditorProps = Beginning & { kind: DocumentKind; document: string | null; drawing: DocumentEditorProps["drawing"] };
@@ -89,7 +92,7 @@ function Editor({ kind, document, drawing, saved, draft, others }: EditorProps) 
   };
   const toLine = (line: number) => setJump({ line });
   const wrong = new Set((checked.check?.errors ?? []).flatMap(({ line }) => (line === null ? [] : [line])));
-  const about = draft === null ? saved.note : draft.note || "These are changes that were not saved yet.";
+  const about = draft === null ? saved.note : draft.note || t("These are changes that were not saved yet.");
   return (
     <section class="page editor-page">
       <h1>{titleOf(kind, document, others)}</h1>
@@ -126,13 +129,13 @@ function Editor({ kind, document, drawing, saved, draft, others }: EditorProps) 
       </div>
       {leaving.asked !== null && (
         <Confirm
-          title="Leave without saving?"
-          confirm="Leave"
-          cancel="Keep editing"
+          title={t("Leave without saving?")}
+          confirm={t("Leave")}
+          cancel={t("Keep editing")}
           onConfirm={() => leaving.allow(leaving.asked as () => void)}
           onCancel={leaving.stay}
         >
-          Your changes stay on this device: you find them when you edit this {kind.said} again.
+          {t("Your changes stay on this device: you find them when you edit this {kind} again.", { kind: kind.said })}
         </Confirm>
       )}
     </section>

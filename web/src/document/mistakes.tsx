@@ -1,5 +1,7 @@
 // What is wrong with a text, each with its line, which a click goes to.
 import type { Checked } from "./checked";
+import { t, tn } from "../words/words";
+import { Told } from "../words/told";
 
 interface MistakesProps {
   id: string;
@@ -10,7 +12,7 @@ interface MistakesProps {
 export function Mistakes({ id, checked, onLine }: MistakesProps) {
   const errors = checked.check?.errors ?? [];
   return (
-    <section class="mistakes" aria-label="Mistakes">
+    <section class="mistakes" aria-label={t("Mistakes")}>
       <p id={id} class={`verdict ${verdictKind(checked)}`} role="status">
         {verdict(checked)}
       </p>
@@ -19,10 +21,10 @@ export function Mistakes({ id, checked, onLine }: MistakesProps) {
           {errors.map(({ line, message }, index) => (
             <li key={index}>
               {line === null ? (
-                <p class="mistake-line">{message}</p>
+                <p class="mistake-line"><Told text={message} /></p>
               ) : (
                 <button type="button" class="mistake-line" onClick={() => onLine(line)}>
-                  <strong>Line {line}</strong> <span>{message}</span>
+                  <strong>{t("Line {line}", { line })}</strong> <span><Told text={message} /></span>
                 </button>
               )}
             </li>
@@ -39,9 +41,9 @@ function verdictKind({ check, failure }: Checked): "unknown" | "good" | "wrong" 
 }
 
 function verdict({ check, failure }: Checked): string {
-  if (failure !== "") return `It cannot be checked now: ${failure} Your text is kept.`;
-  if (check === null) return "Checking …";
+  if (failure !== "") return t("It cannot be checked now: {failure} Your text is kept.", { failure });
+  if (check === null) return t("Checking …");
   const count = check.errors.length;
-  if (count === 0) return "No mistakes";
-  return count === 1 ? "1 mistake" : `${count} mistakes`;
+  if (count === 0) return t("No mistakes");
+  return tn("{count} mistake", "{count} mistakes", { count });
 }

@@ -4,6 +4,7 @@ import { may, whyNot } from "../state/access";
 import { Confirm } from "../app/confirm";
 import * as rest from "../wire/rest";
 import type { DocumentSummary } from "../wire/types";
+import { t } from "../words/words";
 
 interface SaveFormProps {
   /** What is saved, in a sentence. */
@@ -32,8 +33,8 @@ export function SaveForm(props: SaveFormProps) {
     } catch (error) {
       setMistake(
         error instanceof rest.Refusal && error.errors.length > 1
-          ? "It was not saved: put the mistakes right first."
-          : `It was not saved: ${(error as Error).message}`,
+          ? t("It was not saved: put the mistakes right first.")
+          : t("It was not saved: {message}", { message: (error as Error).message }),
       );
       setSaving(false);
     }
@@ -48,7 +49,7 @@ export function SaveForm(props: SaveFormProps) {
   return (
     <form class="save-form" onSubmit={submit}>
       <div class="field">
-        <label for="save-name">Name</label>
+        <label for="save-name">{t("Name")}</label>
         <input
           id="save-name"
           class="mono"
@@ -64,31 +65,36 @@ export function SaveForm(props: SaveFormProps) {
       <div class="page-actions">
         {changed && (
           <button class="button" type="button" onClick={() => setAsking("discard")}>
-            Discard changes
+            {t("Discard changes")}
           </button>
         )}
         <button class="button primary" type="submit" disabled={saving || !may("operator")}>
-          Save
+          {t("Save")}
         </button>
-        {!may("operator") && <p class="quiet">{whyNot("Saving", "operator")}</p>}
+        {!may("operator") && <p class="quiet">{whyNot(t("Saving"), "operator")}</p>}
       </div>
       <p id="save-mistake" class="mistake" role="alert">
         {mistake}
       </p>
       {asking === "replace" && (
-        <Confirm title={`Replace '${name}'?`} confirm="Replace it" onConfirm={() => void save()} onCancel={() => setAsking(null)}>
-          There is another {said} of this name. Its file is lost when this one takes its place.
+        <Confirm
+          title={t("Replace '{name}'?", { name })}
+          confirm={t("Replace it")}
+          onConfirm={() => void save()}
+          onCancel={() => setAsking(null)}
+        >
+          {t("There is another {kind} of this name. Its file is lost when this one takes its place.", { kind: said })}
         </Confirm>
       )}
       {asking === "discard" && (
         <Confirm
-          title="Discard your changes?"
-          confirm="Discard"
-          cancel="Keep editing"
+          title={t("Discard your changes?")}
+          confirm={t("Discard")}
+          cancel={t("Keep editing")}
           onConfirm={onDiscard}
           onCancel={() => setAsking(null)}
         >
-          What you have written since it was last saved is lost.
+          {t("What you have written since it was last saved is lost.")}
         </Confirm>
       )}
     </form>

@@ -6,6 +6,7 @@ import type { Lane, TimelineItem } from "../run/timeline/lanes";
 import type { ErrandBegun, FleetRobot, LegBegun, LegEnded, PlannedStop } from "../wire/types";
 import type { FleetEvent } from "./fleet_past";
 import { authorInWords, doesInWords, placeInWords, wholeClock } from "./fleet_words";
+import { t } from "../words/words";
 
 /** What passes from one robot to another: rows, and when it is given and taken. */
 export interface Transfer {
@@ -44,7 +45,7 @@ export function chartRows(
   return {
     lanes: [
       ...names.map((name): Lane => ({ kind: "steps", name: robotName(name), items: rows.get(name) ?? [] })),
-      { kind: "people", name: "Changes", items: changes },
+      { kind: "people", name: t("Changes"), items: changes },
     ],
     transfers: [...made(names, events), ...toCome(names, robots ?? [])],
   };
@@ -77,12 +78,14 @@ function doneBy(robot: string, events: readonly FleetEvent[], now: number): Grow
         if (going !== null) {
           going.end = event.at_s;
           going.look = event.came ? "errand" : "errand put-back";
-          going.title += event.came ? ", came there" : `, did not come there: ${event.reason ?? "nobody knows why"}`;
+          going.title += event.came
+            ? t(", came there")
+            : t(", did not come there: {why}", { why: event.reason ?? t("nobody knows why") });
         }
         going = null;
         break;
       case "fleet_told":
-        if (event.in_service === false) out = begin(event, "out of service", event.told, "out");
+        if (event.in_service === false) out = begin(event, t("out of service"), event.told, "out");
         else if (event.in_service === true && out !== null) {
           out.end = event.at_s;
           out = null;
@@ -94,10 +97,10 @@ function doneBy(robot: string, events: readonly FleetEvent[], now: number): Grow
 }
 
 const OUTCOMES: Readonly<Record<string, readonly [string, string]>> = {
-  done: ["execution done", "done"],
-  failed: ["execution put-back", "failed"],
-  withdrawn: ["execution put-back", "broken off"],
-  item_lost: ["execution put-back", "it is lost"],
+  done: ["execution done", t("done")],
+  failed: ["execution put-back", t("failed")],
+  withdrawn: ["execution put-back", t("broken off")],
+  item_lost: ["execution put-back", t("it is lost")],
 };
 
 function endLeg(item: Growing, event: LegEnded): void {
@@ -112,12 +115,22 @@ function legWord({ booking, place }: LegBegun): string {
 }
 
 function legTitle({ robot, action, booking, place, start }: LegBegun): string {
-  return `${robotName(robot)} ${doesInWords(action, booking)} at ${placeInWords(place)}, from ${placeInWords(start)}`;
+  return t("{robot} {action} at {place}, from {start}", {
+    robot: robotName(robot),
+    action: doesInWords(action, booking),
+    place: placeInWords(place),
+    start: placeInWords(start),
+  });
 }
 
 function errandTitle({ robot, place, start, author }: ErrandBegun): string {
-  const why = author === null ? "to make way" : `sent by ${authorInWords(author)}`;
-  return `${robotName(robot)} goes to ${placeInWords(place)}, from ${placeInWords(start)}, ${why}`;
+  const why = author === null ? t("to make way") : t("sent by {author}", { author: authorInWords(author) });
+  return t("{robot} goes to {place}, from {start}, {why}", {
+    robot: robotName(robot),
+    place: placeInWords(place),
+    start: placeInWords(start),
+    why,
+  });
 }
 
 /** What a robot is still to do; the leg that it is at ends when the plan says. */
@@ -127,15 +140,22 @@ function planned({ robot, stops, at_work }: FleetRobot, index: number, now: numb
   return goals.map((stop, order) => {
     const isNow = order === 0 && at_work?.request === stop.request && at_work.place === stop.place;
     const start = isNow ? now : Math.max(stop.begins_s, now);
-    const slack = stop.slack_s < 1e6 ? `, may be ${howLong(stop.slack_s)} late` : "";
-    const partner = stop.partner === null ? "" : `, with ${robotName(stop.partner)}`;
+    const slack = stop.slack_s < 1e6 ? t(", may be {duration} late", { duration: howLong(stop.slack_s) }) : "";
+    const partner = stop.partner === null ? "" : t(", with {partner}", { partner: robotName(stop.partner) });
     const does = doesInWords(stop.action, stop.request);
     return {
       seq: -(index * STOPS_OF_A_ROBOT + order + 1),
       start,
       end: Math.max(stop.done_s, start),
       word: `${stop.request} ${placeInWords(stop.place)}`,
-      title: `planned: ${robotName(robot)} ${does} at ${placeInWords(stop.place)} until ${wholeClock(stop.done_s)}${slack}${partner}`,
+      title: t("planned: {robot} {does} at {place} until {time}{slack}{partner}", {
+        robot: robotName(robot),
+        does,
+        place: placeInWords(stop.place),
+        time: wholeClock(stop.done_s),
+        slack,
+        partner,
+      }),
       look: "execution planned",
       node: null,
       parts: [],
@@ -161,7 +181,7 @@ export function changeInWords(event: FleetEvent): readonly string[] {
   switch (event.type) {
     case "plan_changed": {
       const touched = [...event.robots.map(robotName), ...event.requests.map((each) => `“${each}”`)];
-      const whom = touched.length === 0 ? [] : [`It touches ${touched.join(", ")}.`];
+      const whom = touched.length === 0 ? [] : [t("It touches {touched}.", { touched: touched.join(", ") })];
       return [sentence(event.reason), ...whom, ...Object.entries(event.said).map(([who, said]) => sentence(`${robotName(who)}: ${said}`))];
     }
     case "fleet_told": {

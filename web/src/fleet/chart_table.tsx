@@ -4,6 +4,7 @@ import { robotName } from "../question/fault_words";
 import { sentence } from "../run/run_words";
 import type { ChartRows } from "./chart_rows";
 import { wholeClock } from "./fleet_words";
+import { t } from "../words/words";
 
 const AT_ONCE = 50;
 
@@ -14,17 +15,22 @@ export function ChartTable({ rows, names }: { rows: ChartRows; names: readonly s
     .sort((a, b) => b.item.start - a.item.start || b.item.seq - a.item.seq);
   const handed = rows.transfers.map(({ request, from, to, taken_s }) => {
     const [giver = "", taker = ""] = [names[from], names[to]].map((name) => robotName(name ?? ""));
-    return `${giver} hands ${request} to ${taker} at ${wholeClock(taken_s)}.`;
+    return t("{giver} hands {request} to {taker} at {time}.", {
+      giver,
+      request,
+      taker,
+      time: wholeClock(taken_s),
+    });
   });
   return (
-    <div class="chart-table" role="region" aria-label="The plan as a table" tabIndex={0}>
+    <div class="chart-table" role="region" aria-label={t("The plan as a table")} tabIndex={0}>
       <table>
         <thead>
           <tr>
-            <th scope="col">From</th>
-            <th scope="col">To</th>
-            <th scope="col">Who</th>
-            <th scope="col">What, and why</th>
+            <th scope="col">{t("From")}</th>
+            <th scope="col">{t("To")}</th>
+            <th scope="col">{t("Who")}</th>
+            <th scope="col">{t("What, and why")}</th>
           </tr>
         </thead>
         <tbody>
@@ -40,7 +46,7 @@ export function ChartTable({ rows, names }: { rows: ChartRows; names: readonly s
       </table>
       {all.length > most && (
         <button type="button" class="small-button" onClick={() => setMost(most + AT_ONCE)}>
-          Show {Math.min(AT_ONCE, all.length - most)} more
+          {t("Show {count} more", { count: Math.min(AT_ONCE, all.length - most) })}
         </button>
       )}
       {handed.length > 0 && <p class="small">{handed.join(" ")}</p>}

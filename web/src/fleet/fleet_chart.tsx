@@ -12,13 +12,14 @@ import { changeInWords, chartRows, type Transfer } from "./chart_rows";
 import { eventsUntil, type FleetEvent } from "./fleet_past";
 import { wholeClock } from "./fleet_words";
 import "../run/timeline/timeline.css";
+import { t } from "../words/words";
 
 const FIRST_LENGTH_S = 600;
 const SHORTEST_S = 30;
 /** What is shown of the time to come, where the chart follows the clock. */
 const AHEAD = 0.35;
 const STEP_S = 1;
-const LABEL = "Robots and changes of their plan; the arrow keys go from one thing to the next, Enter shows what it was";
+const LABEL = t("Robots and changes of their plan; the arrow keys go from one thing to the next, Enter shows what it was");
 
 interface FleetChartProps {
   events: readonly FleetEvent[];
@@ -51,24 +52,20 @@ export function FleetChart({ events, robots, moment }: FleetChartProps) {
   return (
     <section class="panel timeline fleet-chart" aria-labelledby="fleet-chart-title">
       <div class="panel-bar">
-        <h2 id="fleet-chart-title">Plan</h2>
-        <button type="button" class="small-button" aria-pressed={asTable} onClick={() => setAsTable(!asTable)}>
-          As a table
-        </button>
-        <div class="tree-zoom" role="group" aria-label="Span of the plan">
-          <button type="button" class="small-button" aria-label="Longer span" onClick={() => zoom(2)}>
+        <h2 id="fleet-chart-title">{t("Plan")}</h2>
+        <button type="button" class="small-button" aria-pressed={asTable} onClick={() => setAsTable(!asTable)}>{t("As a table")}</button>
+        <div class="tree-zoom" role="group" aria-label={t("Span of the plan")}>
+          <button type="button" class="small-button" aria-label={t("Longer span")} onClick={() => zoom(2)}>
             −
           </button>
-          <button type="button" class="small-button" aria-label="Follow the moment" aria-pressed={own === null} onClick={() => setOwn(null)}>
-            Follow
-          </button>
-          <button type="button" class="small-button" aria-label="Shorter span" disabled={length / 2 < SHORTEST_S} onClick={() => zoom(0.5)}>
+          <button type="button" class="small-button" aria-label={t("Follow the moment")} aria-pressed={own === null} onClick={() => setOwn(null)}>{t("Follow")}</button>
+          <button type="button" class="small-button" aria-label={t("Shorter span")} disabled={length / 2 < SHORTEST_S} onClick={() => zoom(0.5)}>
             +
           </button>
         </div>
       </div>
       {!newest && (
-        <p class="small quiet">What was planned at that moment is not kept: only what was done, and why the plan changed.</p>
+        <p class="small quiet">{t("What was planned at that moment is not kept: only what was done, and why the plan changed.")}</p>
       )}
       {asTable ? (
         <ChartTable rows={rows} names={names} />
@@ -109,9 +106,7 @@ function Chosen({ item, events, moment }: { item: TimelineItem; events: readonly
         {item.end > item.start && <>–{wholeClock(item.end)}</>} {words.join(" ")}
       </p>
       {event !== undefined && (
-        <button type="button" class="small-button" onClick={() => moment.goTo(event.at_s, event.seq)}>
-          Look at this moment
-        </button>
+        <button type="button" class="small-button" onClick={() => moment.goTo(event.at_s, event.seq)}>{t("Look at this moment")}</button>
       )}
     </>
   );
@@ -141,17 +136,17 @@ function Links({ transfers, scale, middle }: { transfers: readonly Transfer[]; s
 }
 
 const SIGNS: readonly (readonly [string, string])[] = [
-  ["execution done", "done"],
-  ["execution", "under way"],
-  ["execution planned", "planned"],
-  ["execution put-back", "not done"],
-  ["errand", "sent, or makes way"],
-  ["out", "out of service"],
+  ["execution done", t("done")],
+  ["execution", t("under way")],
+  ["execution planned", t("planned")],
+  ["execution put-back", t("not done")],
+  ["errand", t("sent, or makes way")],
+  ["out", t("out of service")],
 ];
 
 function Legend() {
   return (
-    <ul class="chart-legend small quiet" aria-label="Signs of the plan’s rows">
+    <ul class="chart-legend small quiet" aria-label={t("Signs of the plan’s rows")}>
       {SIGNS.map(([look, word]) => (
         <li key={word}>
           <svg width="22" height="14" aria-hidden="true">
@@ -167,18 +162,14 @@ function Legend() {
           <g class="item change">
             <path class="body" d="M8 1l7 7-7 7-7-7z" />
           </g>
-        </svg>
-        plan changed
-      </li>
+        </svg>{t("plan changed")}</li>
       <li>
         <svg width="22" height="14" aria-hidden="true">
           <g class="chart-link">
             <path d="M1 2L17 11" />
             <circle cx={17} cy={11} r={3} />
           </g>
-        </svg>
-        handed from robot to robot
-      </li>
+        </svg>{t("handed from robot to robot")}</li>
     </ul>
   );
 }

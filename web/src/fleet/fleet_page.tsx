@@ -26,6 +26,7 @@ import { RobotsList } from "./robots_list";
 import { usePastStandings } from "./use_past_standings";
 import { useSiteEvents } from "./use_site_events";
 import { WaysPanel } from "./ways_panel";
+import { t, tn } from "../words/words";
 import "./fleet.css";
 
 const AGAIN_MS = 1_000;
@@ -36,11 +37,11 @@ export function FleetPage({ site }: { site: string | null }) {
   return (
     <section class="page fleet">
       <div class="page-head">
-        <h1>Fleet</h1>
+        <h1>{t("Fleet")}</h1>
         {sites !== null && sites.length > 1 && <SiteChoice sites={sites} site={shown} />}
       </div>
-      {sites === null && <p class="quiet">Loading …</p>}
-      {sites !== null && shown === null && (site === null ? <NobodyTakesAny /> : <p>There is no site of this address with a fleet.</p>)}
+      {sites === null && <p class="quiet">{t("Loading …")}</p>}
+      {sites !== null && shown === null && (site === null ? <NobodyTakesAny /> : <p>{t("There is no site of this address with a fleet.")}</p>)}
       {shown !== null && <OfSite key={shown.id} site={shown} />}
     </section>
   );
@@ -49,9 +50,9 @@ export function FleetPage({ site }: { site: string | null }) {
 function SiteChoice({ sites, site }: { sites: readonly SiteView[]; site: SiteView | null }) {
   return (
     <div class="field">
-      <label for="fleet-site">Building</label>
+      <label for="fleet-site">{t("Building")}</label>
       <select id="fleet-site" value={site?.id ?? ""} onChange={(event) => go(`/fleet/${event.currentTarget.value}`)}>
-        {site === null && <option value="">Choose a building</option>}
+        {site === null && <option value="">{t("Choose a building")}</option>}
         {sites.map((each) => (
           <option key={each.id} value={each.id}>
             {siteName(each)}
@@ -76,7 +77,7 @@ function OfSite({ site }: { site: SiteView }) {
       <p class="mistake" role="alert">
         {failure}
       </p>
-      {(fleet === null || events === null || plan === null) && failure === "" && <p class="quiet">Loading …</p>}
+      {(fleet === null || events === null || plan === null) && failure === "" && <p class="quiet">{t("Loading …")}</p>}
       {fleet !== null && events !== null && plan !== null && (
         <Shown {...{ site, fleet, events, plan, moment, again }} requests={requests ?? []} />
       )}
@@ -149,14 +150,14 @@ function Shown({ site, fleet, events, requests, plan, moment, again }: ShownProp
       </div>
       <FleetChart {...{ events, moment }} robots={fleet.robots} />
       <Requests {...{ site, requests, events, moment, again }} now={fleet.now_s} />
-      <Scrubber of="the building" moment={moment} going onStep={(direction) => step(events, moment, direction)} />
+      <Scrubber of={t("the building")} moment={moment} going onStep={(direction) => step(events, moment, direction)} />
     </>
   );
 }
 
 /** What the plan does not show of a moment of the past. */
 function pastInWords(known: boolean): string {
-  return known ? "Which ways were closed at that moment is not shown." : "Where robots were at that moment was not recorded.";
+  return known ? t("Which ways were closed at that moment is not shown.") : t("Where robots were at that moment was not recorded.");
 }
 
 /** Where robots are, and whether they have moved since the last reading. */
@@ -186,15 +187,15 @@ function Requests({ requests, events, moment, now, again }: RequestsProps) {
   return (
     <section class="fleet-requests" aria-labelledby="fleet-requests-title">
       <div class="page-head">
-        <h2 id="fleet-requests-title">Requests</h2>
-        <a href="/requests">Ask for something</a>
+        <h2 id="fleet-requests-title">{t("Requests")}</h2>
+        <a href="/requests">{t("Ask for something")}</a>
       </div>
-      {open.length === 0 && <p class="quiet">Nothing is asked for{newest ? " just now" : " at that moment"}.</p>}
-      <RequestList label="Open requests" requests={open} now={time} {...(newest && { changed: again })} />
+      {open.length === 0 && <p class="quiet">{newest ? t("Nothing is asked for just now.") : t("Nothing is asked for at that moment.")}</p>}
+      <RequestList label={t("Open requests")} requests={open} now={time} {...(newest && { changed: again })} />
       {over.length > 0 && (
         <details>
-          <summary>{over.length} that {over.length === 1 ? "is" : "are"} over</summary>
-          <RequestList label="Requests that are over" requests={over} now={time} />
+          <summary>{tn("{count} that is over", "{count} that are over", { count: over.length })}</summary>
+          <RequestList label={t("Requests that are over")} requests={over} now={time} />
         </details>
       )}
     </section>

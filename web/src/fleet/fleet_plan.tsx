@@ -10,6 +10,7 @@ import type { ClosedWayView } from "../wire/types";
 import { PlanHits } from "./plan_hits";
 import type { Picked } from "./picked";
 import { useGliding } from "./use_gliding";
+import { t } from "../words/words";
 
 interface FleetPlanProps {
   plan: Plan;
@@ -37,7 +38,7 @@ export function FleetPlan(props: FleetPlanProps) {
   const here = useMemo(() => robots.filter(({ robot }) => positions.has(robot)), [robots, positions]);
   return (
     <section class="panel plan" aria-labelledby="fleet-plan-title">
-      <FloorView {...{ plan, floor, seen, view, onFloor }} heading={<h2 id="fleet-plan-title">Building</h2>}>
+      <FloorView {...{ plan, floor, seen, view, onFloor }} heading={<h2 id="fleet-plan-title">{t("Building")}</h2>}>
         <PlanHits {...{ floor, sight, closed, picked, onPick }} />
         <RobotMarks {...{ plan, floor, sight, size, seen, marks }} robots={here} onTaken={view.setTaken} />
       </FloorView>

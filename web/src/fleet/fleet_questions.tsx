@@ -6,6 +6,7 @@ import { queue } from "../question/queue";
 import { AwaitedHelpCard } from "../question/waiting_cards";
 import { awaitingHelp } from "../state/questions";
 import type { Asking } from "./fleet_robots";
+import { t } from "../words/words";
 
 /** Which robots of a fleet ask, or are being helped. */
 export function askingOf(robots: readonly string[]): Asking {
@@ -24,10 +25,10 @@ export function FleetQuestions({ robots }: { robots: readonly string[] }) {
   const shown = asked.find(({ dialogue }) => dialogue === chosen) ?? asked[0];
   if (shown === undefined && helped.length === 0) return null;
   return (
-    <section class="fleet-questions" aria-label="What its robots ask">
+    <section class="fleet-questions" aria-label={t("What its robots ask")}>
       {shown !== undefined && <QuestionCard key={shown.dialogue} question={shown} besideTree />}
       {asked.length > 1 && (
-        <ul class="panel fleet-asked" aria-label="Also asked">
+        <ul class="panel fleet-asked" aria-label={t("Also asked")}>
           {asked
             .filter((each) => each !== shown)
             .map((each) => (

@@ -3,18 +3,19 @@ import { likelyEllipse } from "../building/likely_ellipse";
 import { robotName } from "../question/fault_words";
 import { clock } from "../run/run_words";
 import type { ClosedWayView, FleetRobot } from "../wire/types";
+import { decimal, t } from "../words/words";
 
 /** What a leg, or a stop of the plan, does with a request at its place. */
 const ACTIONS: Readonly<Record<string, (request: string) => string>> = {
-  visit: (request) => `comes for ${request}`,
-  deliver_message: (request) => `tells ${request}`,
-  meet: (request) => `meets the person of ${request}`,
-  escort: (request) => `shows the way for ${request}`,
-  collect: (request) => `collects ${request}`,
-  hand_over: (request) => `hands over ${request}`,
-  give: (request) => `passes ${request} on`,
-  take: (request) => `takes ${request} over`,
-  bring_back: (request) => `brings ${request} back`,
+  visit: (request) => t("comes for {request}", { request }),
+  deliver_message: (request) => t("tells {request}", { request }),
+  meet: (request) => t("meets the person of {request}", { request }),
+  escort: (request) => t("shows the way for {request}", { request }),
+  collect: (request) => t("collects {request}", { request }),
+  hand_over: (request) => t("hands over {request}", { request }),
+  give: (request) => t("passes {request} on", { request }),
+  take: (request) => t("takes {request} over", { request }),
+  bring_back: (request) => t("brings {request} back", { request }),
 };
 
 /** "collects tea", as a clause after a robot's name. */
@@ -26,7 +27,7 @@ export function doesInWords(action: string, request: string): string {
 const UNNAMED: ReadonlySet<string> = new Set(["anybody", "token"]);
 
 export function authorInWords(author: { principal: string } | null): string {
-  return author === null || UNNAMED.has(author.principal) ? "somebody" : author.principal;
+  return author === null || UNNAMED.has(author.principal) ? t("somebody") : author.principal;
 }
 
 /** "F1 101" of "F1/101", as people read it. */
@@ -38,29 +39,33 @@ export function placeInWords(place: string): string {
 export function isAtInWords({ at_work, works, out_of_service, connected }: FleetRobot): string {
   if (at_work !== null) {
     const place = placeInWords(at_work.place);
-    if (at_work.request === null || at_work.action === null) return at_work.charges ? `goes to ${place} to charge` : `goes to ${place}`;
-    return `${doesInWords(at_work.action, at_work.request)} at ${place}`;
+    if (at_work.request === null || at_work.action === null)
+      return at_work.charges ? t("goes to {place} to charge", { place }) : t("goes to {place}", { place });
+    return t("{action} at {place}", { action: doesInWords(at_work.action, at_work.request), place });
   }
-  if (out_of_service !== null) return `is out of service: ${out_of_service}`;
-  if (!connected) return "is not connected";
-  return works ? "has nothing to do" : "does not work";
+  if (out_of_service !== null) return t("is out of service: {why}", { why: out_of_service });
+  if (!connected) return t("is not connected");
+  return works ? t("has nothing to do") : t("does not work");
 }
 
 /** "The way between F1 101 and F1 hall is blocked until 5:00 (anna)." */
 export function closedInWords({ between, finding, by, until_s }: ClosedWayView): string {
   const [from = "", to = ""] = between.map(placeInWords);
-  const what = finding === "door_closed" ? "Door closed" : "Blocked";
-  const who = by === null ? "" : `, says ${robotName(by)}`;
-  return `${what} between ${from} and ${to} until ${wholeClock(until_s)}${who}`;
+  const names = { from, to, time: wholeClock(until_s) };
+  const told =
+    finding === "door_closed"
+      ? t("Door closed between {from} and {to} until {time}", names)
+      : t("Blocked between {from} and {to} until {time}", names);
+  return by === null ? told : t("{told}, says {by}", { told, by: robotName(by) });
 }
 
 /** "3 cm": with a chance of 95 % a robot is so near to where it says that it is. */
 export function sureInWords(covariance: readonly number[]): string {
   const { rx } = likelyEllipse(covariance);
-  return rx < 1 ? `${Math.max(1, Math.ceil(100 * rx))} cm` : `${rx.toFixed(1)} m`;
+  return rx < 1 ? `${Math.max(1, Math.ceil(100 * rx))} cm` : `${decimal(rx, 1)} m`;
 }
 
 /** A time of the site's clock without tenths. */
 export function wholeClock(seconds: number): string {
-  return clock(Math.round(seconds)).replace(".0", "");
+  return clock(Math.round(seconds)).replace(/[.,]0(?= s$|$)/, "");
 }

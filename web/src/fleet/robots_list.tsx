@@ -10,6 +10,7 @@ import * as rest from "../wire/rest";
 import type { ErrandEnded, FleetRobot, FleetView } from "../wire/types";
 import type { FleetEvent } from "./fleet_past";
 import { isAtInWords, placeInWords, sureInWords, wholeClock } from "./fleet_words";
+import { t } from "../words/words";
 
 interface RobotsListProps {
   fleet: FleetView;
@@ -23,8 +24,8 @@ interface RobotsListProps {
 export function RobotsList({ fleet, seen, events, onShow, changed }: RobotsListProps) {
   return (
     <section class="panel" aria-labelledby="fleet-robots-title">
-      <h2 id="fleet-robots-title">Robots</h2>
-      <ul class="plan-robots" aria-label="Robots of the fleet">
+      <h2 id="fleet-robots-title">{t("Robots")}</h2>
+      <ul class="plan-robots" aria-label={t("Robots of the fleet")}>
         {fleet.robots.map((robot) => {
           const found = seen.find((each) => each.robot === robot.robot);
           return found === undefined ? null : (
@@ -54,24 +55,23 @@ interface RowProps {
 }
 
 function Row({ fleet, robot, seen, came, onShow, changed }: RowProps) {
-  const where = seen.where === null ? "Nobody knows where it is" : sentence(seen.unseen === null ? seen.where : `${seen.unseen}, ${seen.where}`).slice(0, -1);
+  const where = seen.where === null ? t("Nobody knows where it is") : sentence(seen.unseen === null ? seen.where : `${seen.unseen}, ${seen.where}`).slice(0, -1);
   return (
     <li class="plan-row fleet-robot">
       <div class="fleet-robot-head">
         <button type="button" class="small-button" disabled={seen.where === null} onClick={() => onShow(robot.robot)}>
-          <span class="unseen">Show </span>
+          <span class="unseen">{t("Show")}{" "}</span>
           {seen.name}
         </button>
         <State robot={robot} seen={seen} />
         {robot.run !== null && (
-          <a class="small" href={`/runs/${robot.run}`}>
-            Run<span class="unseen"> of {seen.name}</span>
+          <a class="small" href={`/runs/${robot.run}`}>{t("Run")}<span class="unseen">{" "}{t("of {name}", { name: seen.name })}</span>
           </a>
         )}
       </div>
       <p class="small">
         {where}
-        {robot.pose?.covariance != null && ` (sure to ${sureInWords(robot.pose.covariance)})`}; {isAtInWords(robot)}.{robot.battery !== null && ` Battery ${Math.round(100 * robot.battery)} %.`}{robot.aboard.length > 0 && ` It has ${robot.aboard.join(", ")} aboard.`}
+        {robot.pose?.covariance != null && ` ${t("(sure to {distance})", { distance: sureInWords(robot.pose.covariance) })}`}; {isAtInWords(robot)}.{robot.battery !== null && ` ${t("Battery {percent} %.", { percent: Math.round(100 * robot.battery) })}`}{robot.aboard.length > 0 && ` ${t("It has {aboard} aboard.", { aboard: robot.aboard.join(", ") })}`}
       </p>
       {came !== null && <p class="small quiet">{errandInWords(came)}</p>}
       {may("operator") && <Deeds {...{ fleet, robot, changed }} />}
@@ -80,13 +80,13 @@ function Row({ fleet, robot, seen, came, onShow, changed }: RowProps) {
 }
 
 function errandInWords({ came, place, at, at_s, reason }: ErrandEnded): string {
-  if (came) return `It came to ${placeInWords(place)} at ${wholeClock(at_s)}.`;
-  return `It did not come to ${placeInWords(place)}: ${sentence(reason ?? "nobody knows why")} It stopped near ${placeInWords(at)} at ${wholeClock(at_s)}.`;
+  if (came) return t("It came to {place} at {time}.", { place: placeInWords(place), time: wholeClock(at_s) });
+  return t("It did not come to {place}: {why} It stopped near {near} at {time}.", { place: placeInWords(place), why: sentence(reason ?? t("nobody knows why")), near: placeInWords(at), time: wholeClock(at_s) });
 }
 
 function State({ robot, seen: { activity, unseen, where } }: { robot: FleetRobot; seen: SeenRobot }) {
-  if (robot.out_of_service !== null) return <span class="badge plan-badge robot-waiting">⊘ Out of service</span>;
-  if (unseen !== null || where === null || !robot.connected) return <span class="badge plan-badge">✕ Not seen</span>;
+  if (robot.out_of_service !== null) return <span class="badge plan-badge robot-waiting">{t("⊘ Out of service")}</span>;
+  if (unseen !== null || where === null || !robot.connected) return <span class="badge plan-badge">{t("✕ Not seen")}</span>;
   return (
     <span class={`badge plan-badge robot-${activity}`}>
       {ACTIVITY_SIGNS[activity]} {ACTIVITY_WORDS[activity]}
@@ -109,20 +109,12 @@ function Deeds({ fleet, robot, changed }: { fleet: FleetView; robot: FleetRobot;
   return (
     <>
       <div class="fleet-deeds">
-        <Deed of={name} onDo={() => send(robot.home)}>
-          Send home
-        </Deed>
-        <Deed of={name} onDo={() => setAsked("send")}>
-          Send …
-        </Deed>
+        <Deed of={name} onDo={() => send(robot.home)}>{t("Send home")}</Deed>
+        <Deed of={name} onDo={() => setAsked("send")}>{t("Send …")}</Deed>
         {robot.out_of_service === null ? (
-          <Deed of={name} onDo={() => setAsked("out")}>
-            Out of service …
-          </Deed>
+          <Deed of={name} onDo={() => setAsked("out")}>{t("Out of service …")}</Deed>
         ) : (
-          <Deed of={name} onDo={() => run(rest.putRobotBack(fleet.site, robot.robot))}>
-            Back in service
-          </Deed>
+          <Deed of={name} onDo={() => run(rest.putRobotBack(fleet.site, robot.robot))}>{t("Back in service")}</Deed>
         )}
       </div>
       <p class="mistake small" role="alert">
@@ -156,9 +148,9 @@ interface SendToProps {
 function SendTo({ name, places, onSend, onCancel }: SendToProps) {
   const [place, setPlace] = useState(places[0] ?? "");
   return (
-    <Confirm title={`Send ${name} where?`} confirm="Send it" harmless onConfirm={() => onSend(place)} onCancel={onCancel}>
+    <Confirm title={t("Send {name} where?", { name })} confirm={t("Send it")} harmless onConfirm={() => onSend(place)} onCancel={onCancel}>
       <div class="field fleet-asked-for">
-        <label for="fleet-send-to">Place</label>
+        <label for="fleet-send-to">{t("Place")}</label>
         <select id="fleet-send-to" value={place} onChange={(event) => setPlace(event.currentTarget.value)}>
           {places.map((each) => (
             <option key={each} value={each}>
@@ -167,7 +159,7 @@ function SendTo({ name, places, onSend, onCancel }: SendToProps) {
           ))}
         </select>
       </div>
-      <p class="small quiet">What it is to do for people it begins once it is there.</p>
+      <p class="small quiet">{t("What it is to do for people it begins once it is there.")}</p>
     </Confirm>
   );
 }
@@ -177,12 +169,12 @@ const LONGEST = 300;
 function TakeOut({ name, onTake, onCancel }: { name: string; onTake(reason: string): void; onCancel(): void }) {
   const [reason, setReason] = useState("");
   const [mistake, setMistake] = useState("");
-  const take = () => (reason.trim() === "" ? setMistake("Say why: others will see it.") : onTake(reason.trim()));
+  const take = () => (reason.trim() === "" ? setMistake(t("Say why: others will see it.")) : onTake(reason.trim()));
   return (
-    <Confirm title={`Take ${name} out of service?`} confirm="Take it out" onConfirm={take} onCancel={onCancel}>
-      <p>It breaks off what it does, and others fetch what it has aboard.</p>
+    <Confirm title={t("Take {name} out of service?", { name })} confirm={t("Take it out")} onConfirm={take} onCancel={onCancel}>
+      <p>{t("It breaks off what it does, and others fetch what it has aboard.")}</p>
       <div class="field fleet-asked-for">
-        <label for="fleet-out-why">Why</label>
+        <label for="fleet-out-why">{t("Why")}</label>
         <input id="fleet-out-why" type="text" maxLength={LONGEST} value={reason} onInput={(event) => setReason(event.currentTarget.value)} />
       </div>
       <p class="mistake" role="alert">

@@ -8,13 +8,14 @@ import * as rest from "../wire/rest";
 import type { ClosedWayView, FleetView, WayReport } from "../wire/types";
 import { closedInWords, placeInWords } from "./fleet_words";
 import { closedWay, type Picked, sameWay } from "./picked";
+import { t } from "../words/words";
 
 /** For how long something is said to be so, minutes; 0 until it is forgotten by itself. */
 const SPANS: readonly (readonly [number, string])[] = [
-  [0, "as long as usual"],
-  [10, "10 minutes"],
-  [60, "1 hour"],
-  [480, "8 hours"],
+  [0, t("as long as usual")],
+  [10, t("10 minutes")],
+  [60, t("1 hour")],
+  [480, t("8 hours")],
 ];
 
 interface WaysPanelProps {
@@ -36,9 +37,9 @@ export function WaysPanel(props: WaysPanelProps) {
   const tell = (way: WayReport) => run(rest.tellOfWay(fleet.site, way));
   return (
     <section class="panel fleet-ways" aria-labelledby="fleet-ways-title">
-      <h2 id="fleet-ways-title">Ways</h2>
+      <h2 id="fleet-ways-title">{t("Ways")}</h2>
       <ClosedWays closed={fleet.closed} tell={tell} />
-      {may("operator") ? <CloseWay {...props} tell={tell} /> : <p class="quiet small">{whyNot("Closing a way", "operator")}</p>}
+      {may("operator") ? <CloseWay {...props} tell={tell} /> : <p class="quiet small">{whyNot(t("Closing a way"), "operator")}</p>}
       {may("operator") && picked?.kind === "place" && (
         <SendHere place={picked.place} fleet={fleet} onSend={(robot) => run(rest.sendRobot(fleet.site, robot, picked.place))} />
       )}
@@ -50,9 +51,9 @@ export function WaysPanel(props: WaysPanelProps) {
 }
 
 function ClosedWays({ closed, tell }: { closed: readonly ClosedWayView[]; tell(way: WayReport): void }) {
-  if (closed.length === 0) return <p class="small quiet">No way is closed.</p>;
+  if (closed.length === 0) return <p class="small quiet">{t("No way is closed.")}</p>;
   return (
-    <ul class="closed-ways" aria-label="Ways that are closed now">
+    <ul class="closed-ways" aria-label={t("Ways that are closed now")}>
       {closed.map((each) => (
         <li key={each.between.join(" ")} class="plan-row">
           <span class="small">{closedInWords(each)}.</span>
@@ -61,9 +62,7 @@ function ClosedWays({ closed, tell }: { closed: readonly ClosedWayView[]; tell(w
               type="button"
               class="small-button"
               onClick={() => tell({ finding: "open", between: each.between as [string, string] })}
-            >
-              It is open
-              <span class="unseen"> between {each.between.map(placeInWords).join(" and ")}</span>
+            >{t("It is open")}<span class="unseen">{" "}{t("between {places}", { places: each.between.map(placeInWords).join(t(" and ")) })}</span>
             </button>
           )}
         </li>
@@ -87,7 +86,7 @@ function CloseWay({ fleet, plan, floor, picked, onPick, tell }: WaysPanelProps &
   return (
     <div class="close-way">
       <div class="field">
-        <label for="fleet-way">Way on {floor} (or pick it on the plan)</label>
+        <label for="fleet-way">{t("Way on {floor} (or pick it on the plan)", { floor })}</label>
         <select
           id="fleet-way"
           value={String(index)}
@@ -96,17 +95,17 @@ function CloseWay({ fleet, plan, floor, picked, onPick, tell }: WaysPanelProps &
             onPick(chosen === undefined ? null : { kind: "way", between: named(chosen) });
           }}
         >
-          <option value="-1">Choose a way</option>
+          <option value="-1">{t("Choose a way")}</option>
           {lanes.map((each, at) => (
             <option key={each.between.join(" ")} value={String(at)}>
               {each.between.join(" – ")}
-              {each.door !== null && `, door ${each.door.name}`}
+              {each.door !== null && t(", door {name}", { name: each.door.name })}
             </option>
           ))}
         </select>
       </div>
       <div class="field">
-        <label for="fleet-way-span">For</label>
+        <label for="fleet-way-span">{t("For")}</label>
         <select id="fleet-way-span" value={String(minutes)} onChange={(event) => setMinutes(Number(event.currentTarget.value))}>
           {SPANS.map(([each, word]) => (
             <option key={each} value={String(each)}>
@@ -116,14 +115,10 @@ function CloseWay({ fleet, plan, floor, picked, onPick, tell }: WaysPanelProps &
         </select>
       </div>
       <div class="fleet-deeds">
-        <button type="button" class="button" disabled={lane === undefined || already} onClick={() => close("blocked")}>
-          Blocked
-        </button>
-        <button type="button" class="button" disabled={(lane?.door ?? null) === null || already} onClick={() => close("door_closed")}>
-          Door closed
-        </button>
+        <button type="button" class="button" disabled={lane === undefined || already} onClick={() => close("blocked")}>{t("Blocked")}</button>
+        <button type="button" class="button" disabled={(lane?.door ?? null) === null || already} onClick={() => close("door_closed")}>{t("Door closed")}</button>
       </div>
-      <p class="small quiet">Plans lead round it from then on; a robot on its way still goes by what it sees.</p>
+      <p class="small quiet">{t("Plans lead round it from then on; a robot on its way still goes by what it sees.")}</p>
     </div>
   );
 }
@@ -131,9 +126,9 @@ function CloseWay({ fleet, plan, floor, picked, onPick, tell }: WaysPanelProps &
 function SendHere({ place, fleet, onSend }: { place: string; fleet: FleetView; onSend(robot: string): void }) {
   const [robot, setRobot] = useState(fleet.robots[0]?.robot ?? "");
   return (
-    <div class="close-way" role="group" aria-label={`Send a robot to ${placeInWords(place)}`}>
+    <div class="close-way" role="group" aria-label={t("Send a robot to {place}", { place: placeInWords(place) })}>
       <div class="field">
-        <label for="fleet-send-here">Send to {placeInWords(place)}</label>
+        <label for="fleet-send-here">{t("Send to {place}", { place: placeInWords(place) })}</label>
         <select id="fleet-send-here" value={robot} onChange={(event) => setRobot(event.currentTarget.value)}>
           {fleet.robots.map((each) => (
             <option key={each.robot} value={each.robot}>
@@ -142,10 +137,8 @@ function SendHere({ place, fleet, onSend }: { place: string; fleet: FleetView; o
           ))}
         </select>
       </div>
-      <button type="button" class="button" disabled={!fleet.places.includes(place)} onClick={() => onSend(robot)}>
-        Go there
-      </button>
-      {!fleet.places.includes(place) && <p class="small quiet">Robots are not sent there: the scene names no place.</p>}
+      <button type="button" class="button" disabled={!fleet.places.includes(place)} onClick={() => onSend(robot)}>{t("Go there")}</button>
+      {!fleet.places.includes(place) && <p class="small quiet">{t("Robots are not sent there: the scene names no place.")}</p>}
     </div>
   );
 }

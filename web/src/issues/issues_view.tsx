@@ -10,6 +10,7 @@ import type { IssueSummary } from "../wire/types";
 import { momentOf, outcomeOf } from "./issue_words";
 import { useIssuesPage } from "./issues_page";
 import { pages, search, searchIssues } from "./issues_search";
+import { t } from "../words/words";
 import "./issues.css";
 
 export function IssuesView() {
@@ -20,27 +21,25 @@ export function IssuesView() {
   return (
     <section class="page">
       <div class="page-head">
-        <h1>Issues</h1>
-        <a class="button" href="/statistics">
-          Statistics
-        </a>
+        <h1>{t("Issues")}</h1>
+        <a class="button" href="/statistics">{t("Statistics")}</a>
       </div>
       <SearchFields
         search={search.value}
-        hint="Part, place, robot, kind of issue, task tree"
+        hint={t("Part, place, robot, kind of issue, task tree")}
         onSearch={searchIssues}
       />
       <p class="mistake" role="alert">
         {failure}
       </p>
-      {issues === null && failure === "" && <p class="quiet">Loading …</p>}
+      {issues === null && failure === "" && <p class="quiet">{t("Loading …")}</p>}
       {none && (
         <p class="panel empty quiet">
-          {isAnything(search.value) ? "No robot has noticed anything wrong yet." : "No issue is like this."}
+          {isAnything(search.value) ? t("No robot has noticed anything wrong yet.") : t("No issue is like this.")}
         </p>
       )}
       {issues !== null && !none && (
-        <ol class="issues" aria-label="Issues, newest first">
+        <ol class="issues" aria-label={t("Issues, newest first")}>
           {issues.map((issue) => (
             <Row key={issue.seq} issue={issue} now={now} />
           ))}
@@ -63,9 +62,7 @@ function Row({ issue, now }: { issue: IssueSummary; now: number }) {
         </span>
         <span class="issue-where">
           <span>{plain(issue.tree)}</span>
-          <span class="small quiet">
-            {withoutRun(issue.robot)} · {issue.world} · at {clock(issue.time)}
-          </span>
+          <span class="small quiet">{t("{robot} · {world} · at {time}", { robot: withoutRun(issue.robot), world: issue.world, time: clock(issue.time) })}</span>
         </span>
         <span class="issue-outcome">{outcomeOf(issue)}</span>
         <span class="issue-raised">
@@ -92,14 +89,10 @@ function Paging({ last, more }: { last: number | null; more: boolean }) {
   const page = pages.value.length;
   if (page === 1 && !more) return null;
   return (
-    <nav class="paging" aria-label="Pages of issues">
-      <button class="button" type="button" disabled={page === 1} onClick={() => (pages.value = pages.value.slice(0, -1))}>
-        Newer
-      </button>
-      <span class="quiet">Page {page}</span>
-      <button class="button" type="button" disabled={!more} onClick={() => (pages.value = [...pages.value, last])}>
-        Older
-      </button>
+    <nav class="paging" aria-label={t("Pages of issues")}>
+      <button class="button" type="button" disabled={page === 1} onClick={() => (pages.value = pages.value.slice(0, -1))}>{t("Newer")}</button>
+      <span class="quiet">{t("Page {page}", { page })}</span>
+      <button class="button" type="button" disabled={!more} onClick={() => (pages.value = [...pages.value, last])}>{t("Older")}</button>
     </nav>
   );
 }

@@ -7,8 +7,13 @@ import { dialogueOf, type Question } from "../state/questions";
 import { helperName } from "../state/preferences";
 import { command } from "../state/service";
 import { answerWhileLeaving, Refusal } from "../wire/rest";
+import { t } from "../words/words";
+import { said } from "../words/said";
 
 export type Answer = "yes" | "no";
+
+/** As they stand on their buttons. */
+export const WORDS = { yes: t("YES"), no: t("NO") } as const;
 
 export const UNDO_MS = 3_000;
 
@@ -36,29 +41,34 @@ let timer = 0;
 /** Answer the open question of a dialogue. */
 export function answer(question: Question, value: Answer): void {
   const option = question.prompt?.answers.find((each) => each.value === value);
-  if (option !== undefined) give(question, { answer: value }, value.toUpperCase(), option);
+  if (option !== undefined) give(question, { answer: value }, WORDS[value], option);
 }
 
 /** Choose one of the ways to answer the open question of a dialogue. */
 export function choose(question: Question, way: string): void {
   const option = question.prompt?.ways.find((each) => each.way === way);
-  if (option !== undefined) give(question, { way }, `“${option.label}”`, option);
+  if (option !== undefined) give(question, { way }, quoted(option.label), option);
+}
+
+/** What the service says, between quotation marks. */
+export function quoted(text: string): string {
+  return t("“{text}”", { text: said(text) });
 }
 
 /** Whether this is the reply that is being held. */
-export function isHeld(prompt: string, said: string): boolean {
-  return held.value?.prompt === prompt && held.value.said === said;
+export function isHeld(prompt: string, words: string): boolean {
+  return held.value?.prompt === prompt && held.value.said === words;
 }
 
-function give(question: Question, reply: Reply, said: string, option: { effect: string; final: boolean }): void {
+function give(question: Question, reply: Reply, words: string, option: { effect: string; final: boolean }): void {
   const { prompt } = question;
   if (!may("helper")) return;
   if (prompt === null || question.awaiting !== "answer" || given.value.has(prompt.prompt)) return;
-  if (isHeld(prompt.prompt, said)) return;
+  if (isHeld(prompt.prompt, words)) return;
   if (held.value?.prompt === prompt.prompt) undo();
   else sendHeld();
   note(prompt.prompt, null);
-  const waiting = { question, prompt: prompt.prompt, reply, said, effect: option.effect };
+  const waiting = { question, prompt: prompt.prompt, reply, said: words, effect: option.effect };
   if (!option.final) {
     void send(waiting);
     return;
@@ -80,7 +90,7 @@ export function sendHeld(): void {
   if (waiting !== null) void send(waiting);
 }
 
-async function send({ question, prompt, reply, said }: Held): Promise<void> {
+async function send({ question, prompt, reply, said: words }: Held): Promise<void> {
   const { dialogue } = question;
   given.value = new Set([...given.value, prompt]);
   try {
@@ -93,11 +103,11 @@ async function send({ question, prompt, reply, said }: Held): Promise<void> {
     given.value = new Set([...given.value].filter((each) => each !== prompt));
     const faster = error instanceof Refusal ? error.answeredBy : null;
     if (faster === null) {
-      note(prompt, `Your ${said} was not sent: ${(error as Error).message}`);
+      note(prompt, t("Your {reply} was not sent: {message}", { reply: words, message: said((error as Error).message) }));
     } else if (faster === helperName.value) {
-      note(prompt, `Your ${said} does not count: you have answered this already.`);
+      note(prompt, t("Your {reply} does not count: you have answered this already.", { reply: words }));
     } else {
-      tellEnding(question, `${faster} was faster; your ${said} does not count.`);
+      tellEnding(question, t("{faster} was faster; your {reply} does not count.", { faster, reply: words }));
     }
   }
 }
@@ -117,8 +127,8 @@ effect(() => {
   if (now?.prompt?.prompt === waiting.prompt && now.awaiting === "answer") return;
   const by = now?.answered_by ?? null;
   undo();
-  const why = by === null ? "the question was closed first" : `${by} answered first`;
-  tellEnding(waiting.question, `Your ${waiting.said} was not sent: ${why}.`);
+  const why = by === null ? t("the question was closed first") : t("{by} answered first", { by });
+  tellEnding(waiting.question, t("Your {reply} was not sent: {why}.", { reply: waiting.said, why }));
 });
 
 window.addEventListener("pagehide", () => {

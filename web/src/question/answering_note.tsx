@@ -5,6 +5,7 @@ import { connection } from "../state/service";
 import { held, mistakes } from "./answering";
 import type { Arming } from "./arming";
 import { isAnswered } from "./takes_answers";
+import { t } from "../words/words";
 
 export function AnsweringNote({ question, arming: { tooEarly } }: { question: Question; arming: Arming }) {
   const prompt = question.prompt?.prompt ?? "";
@@ -15,12 +16,16 @@ export function AnsweringNote({ question, arming: { tooEarly } }: { question: Qu
   const mistake = mistakes.value.get(prompt);
   return (
     <p class="answering-note" role="status">
-      {waiting !== null && <span class="unseen">Your {waiting.said} is sent in 3 seconds. Escape takes it back.</span>}
-      {!allowed && whyNot("Answering", "helper")}
-      {offline && "No connection to the service. You can answer as soon as it is back."}
+      {waiting !== null && (
+        <span class="unseen">{t("Your {reply} is sent in 3 seconds. Escape takes it back.", { reply: waiting.said })}</span>
+      )}
+      {!allowed && whyNot(t("Answering"), "helper")}
+      {offline && t("No connection to the service. You can answer as soon as it is back.")}
       {mistake !== undefined && <span class="mistake">{mistake}</span>}
-      {busy && !offline && "Sent."}
-      {tooEarly && !busy && !offline && allowed && <strong>This question has only just come. Read it, then answer again.</strong>}
+      {busy && !offline && t("Sent.")}
+      {tooEarly && !busy && !offline && allowed && (
+        <strong>{t("This question has only just come. Read it, then answer again.")}</strong>
+      )}
     </p>
   );
 }

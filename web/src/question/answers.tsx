@@ -1,14 +1,15 @@
 // The two answers, large, each with what it will do: for a question that has no ways of help.
 import { keys, keysOn } from "../state/preferences";
 import type { Question } from "../state/questions";
-import { type Answer, isHeld } from "./answering";
+import { type Answer, isHeld, WORDS } from "./answering";
 import { AnsweringNote } from "./answering_note";
 import type { Arming } from "./arming";
 import { HeldBack } from "./held_back";
 import { takesAnswers } from "./takes_answers";
+import { t } from "../words/words";
+import { said } from "../words/said";
+import { Told } from "../words/told";
 import "./answers.css";
-
-export const WORDS = { yes: "YES", no: "NO" } as const;
 
 interface AnswersProps {
   question: Question;
@@ -22,7 +23,7 @@ export function Answers({ question, arming, onAnswer }: AnswersProps) {
   const closed = !takesAnswers(question, arming);
   return (
     <div class="answering">
-      <div class="answers" role="group" aria-label="Your answer">
+      <div class="answers" role="group" aria-label={t("Your answer")}>
         {prompt.answers.map(({ value, effect }) => (
           <button
             key={value}
@@ -36,12 +37,16 @@ export function Answers({ question, arming, onAnswer }: AnswersProps) {
               {WORDS[value]}
               <AnswerKey value={value} />
             </span>
-            <span class="answer-effect">{effect}</span>
+            <span class="answer-effect"><Told text={effect} /></span>
           </button>
         ))}
         <HeldBack prompt={prompt.prompt} />
       </div>
-      {prompt.timeout_effect !== "" && <p class="answer-timeout">Without an answer: {prompt.timeout_effect}</p>}
+      {prompt.timeout_effect !== "" && (
+        <p class="answer-timeout">
+          {t("Without an answer: {effect}", { effect: said(prompt.timeout_effect) })}
+        </p>
+      )}
       <AnsweringNote question={question} arming={arming} />
     </div>
   );

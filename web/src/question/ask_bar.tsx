@@ -5,6 +5,7 @@ import { faultInWords, robotName } from "./fault_words";
 import { isPutOff, putOffCalls, rings } from "../calling/calls";
 import { shown } from "./queue";
 import { questions } from "../state/questions";
+import { t } from "../words/words";
 import "./ask_bar.css";
 
 export function AskBar() {
@@ -18,19 +19,19 @@ export function AskBar() {
   if (fleet && questions.value.every((each) => fleet.robots.some(({ robot }) => robot === each.robot))) return null;
   const others = questions.value.length - 1;
   return (
-    <aside class="ask-bar" aria-label="A robot asks">
+    <aside class="ask-bar" aria-label={t("A robot asks")}>
       <p>
-        <strong>{robotName(question.robot)} asks for help.</strong> {faultInWords(question)}
-        {others > 0 && <span class="quiet"> And {others} more.</span>}
+        <strong>{t("{robot} asks for help.", { robot: robotName(question.robot) })}</strong> {faultInWords(question)}
+        {others > 0 && <span class="quiet"> {t("And {others} more.", { others })}</span>}
       </p>
       <div class="ask-bar-buttons">
         {rings.value.length > 0 && !isPutOff(question) && (
           <button type="button" class="button" onClick={() => putOffCalls(question)}>
-            Not me
+            {t("Not me")}
           </button>
         )}
         <a class="button primary" href="/">
-          Answer
+          {t("Answer")}
         </a>
       </div>
     </aside>

@@ -10,6 +10,7 @@ import { plain, withoutRun } from "../tree/words";
 import * as rest from "../wire/rest";
 import type { Event, RobotView, RunSummary } from "../wire/types";
 import { glanceOf, type Sign } from "./glance";
+import { parts, t } from "../words/words";
 import "./at_a_glance.css";
 
 const SHOWN_AT_MOST = 5;
@@ -50,14 +51,12 @@ export function AtAGlance() {
           ))}
           {failures.length > SHOWN_AT_MOST && (
             <li>
-              <a href="/runs">And {failures.length - SHOWN_AT_MOST} more runs have failed.</a>
+              <a href="/runs">{t("And {count} more runs have failed.", { count: failures.length - SHOWN_AT_MOST })}</a>
             </li>
           )}
         </ul>
       )}
-      <p class="quiet">
-        {more} This page tells you when a robot asks. You can leave it open and do something else.
-      </p>
+      <p class="quiet">{more} {t("This page tells you when a robot asks. You can leave it open and do something else.")}</p>
     </div>
   );
 }
@@ -66,20 +65,20 @@ function Lost({ robot }: { robot: RobotView }) {
   return (
     <li>
       <a href={`/runs/${robot.run}`}>
-        <strong>{withoutRun(robot.robot)}</strong> is gone, and its run waits for it.
+        {parts("{robot} is gone, and its run waits for it.", { robot: <strong>{withoutRun(robot.robot)}</strong> })}
       </a>
     </li>
   );
 }
 
 function Failure({ run, now }: { run: RunSummary; now: number }) {
-  const what = run.status === "failed" ? "failed" : "cannot be read";
+  const told = { tree: <strong>{plain(run.tree)}</strong>, ago: ago(Date.parse(run.ended ?? run.started), now) };
   return (
     <li>
       <a href={`/runs/${run.id}`}>
-        <strong>{plain(run.tree)}</strong> {what} {ago(Date.parse(run.ended ?? run.started), now)}. {run.result !== null && sentence(outcome(run))}
+        {run.status === "failed" ? parts("{tree} failed {ago}.", told) : parts("{tree} cannot be read {ago}.", told)} {run.result !== null && sentence(outcome(run))}
       </a>
-      <button type="button" class="button" aria-label={`Put aside: ${plain(run.tree)}`} onClick={() => noteKnown(run.id)}>
+      <button type="button" class="button" aria-label={t("Put aside: {tree}", { tree: plain(run.tree) })} onClick={() => noteKnown(run.id)}>
         ✕
       </button>
     </li>

@@ -5,6 +5,7 @@ import type { Question } from "../state/questions";
 import { isPutOff, putOffCalls, takeCallsAgain } from "../calling/calls";
 import { claim, release } from "./claiming";
 import { askedNow } from "./turn";
+import { t } from "../words/words";
 import "./claim_strip.css";
 
 export function ClaimStrip({ question }: { question: Question }) {
@@ -17,16 +18,16 @@ export function ClaimStrip({ question }: { question: Question }) {
         <span class="who-dot" aria-hidden="true">
           {by.slice(0, 1).toUpperCase()}
         </span>
-        {mine ? "You are on it." : `${by} is answering.`}
+        {mine ? t("You are on it.") : t("{by} is answering.", { by })}
       </p>
       {mine && (
         <button type="button" class="button" onClick={() => release(dialogue)}>
-          Let go
+          {t("Let go")}
         </button>
       )}
       {!mine && may("helper") && (
         <button type="button" class="button" onClick={() => void claim(dialogue, true)}>
-          Take over
+          {t("Take over")}
         </button>
       )}
     </div>
@@ -37,8 +38,13 @@ function NobodyOnIt({ question }: { question: Question }) {
   const asked = askedNow(question);
   const others = asked !== null && asked !== helperName.value;
   const off = isPutOff(question);
-  const turn = asked === null ? "Nobody is on it yet." : others ? `${asked} is asked now.` : "You are asked now.";
-  const who = off ? "You are not called about it here." : turn;
+  const turn =
+    asked === null
+      ? t("Nobody is on it yet.")
+      : others
+        ? t("{asked} is asked now.", { asked })
+        : t("You are asked now.");
+  const who = off ? t("You are not called about it here.") : turn;
   return (
     <div class={`claim ${others ? "others" : ""}`}>
       <p class={others ? undefined : "quiet"}>{who}</p>
@@ -46,11 +52,11 @@ function NobodyOnIt({ question }: { question: Question }) {
         <div class="claim-buttons">
           {!others && (
             <button type="button" class="button" onClick={() => (off ? takeCallsAgain : putOffCalls)(question)}>
-              {off ? "Call me again" : "Not me"}
+              {off ? t("Call me again") : t("Not me")}
             </button>
           )}
           <button type="button" class="button" onClick={() => void claim(question.dialogue, false)}>
-            {others ? "Take it" : "I am on it"}
+            {others ? t("Take it") : t("I am on it")}
           </button>
         </div>
       )}

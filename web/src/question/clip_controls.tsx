@@ -3,6 +3,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import type { Question } from "../state/questions";
 import { picturePath } from "../wire/rest";
 import type { ClipPicture } from "../wire/types";
+import { decimal, t } from "../words/words";
 
 interface Props {
   question: Question;
@@ -42,7 +43,7 @@ export function ClipControls({ question: { clip, dialogue }, frame, onFrame }: P
   const when = momentInWords(clip, position);
   return (
     <div class="clip">
-      <button type="button" class="button clip-play" onClick={play} aria-label={playing ? "Pause the clip" : "Play the seconds before"}>
+      <button type="button" class="button clip-play" onClick={play} aria-label={playing ? t("Pause the clip") : t("Play the seconds before")}>
         <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true">
           <path d={playing ? "M3 2h4v12H3zM9 2h4v12H9z" : "M3 1.5 14 8 3 14.5z"} fill="currentColor" />
         </svg>
@@ -53,7 +54,7 @@ export function ClipControls({ question: { clip, dialogue }, frame, onFrame }: P
         max={clip.length}
         value={position}
         onInput={scrub}
-        aria-label="Moment before the fault"
+        aria-label={t("Moment before the fault")}
         aria-valuetext={when}
       />
       <output class="small quiet" aria-hidden="true">
@@ -78,12 +79,12 @@ function secondsBefore(clip: readonly ClipPicture[], position: number): number {
 
 function momentInWords(clip: readonly ClipPicture[], position: number): string {
   const before = secondsBefore(clip, position);
-  return before === 0 ? "the moment of the fault" : `${before.toFixed(1)} seconds before the fault`;
+  return before === 0 ? t("the moment of the fault") : t("{before} seconds before the fault", { before: decimal(before, 1) });
 }
 
 function shortMoment(clip: readonly ClipPicture[], position: number): string {
   const before = secondsBefore(clip, position);
-  return before === 0 ? "fault" : `−${before.toFixed(1)} s`;
+  return before === 0 ? t("fault") : `−${decimal(before, 1)} s`;
 }
 
 function preload(clip: readonly ClipPicture[]): void {

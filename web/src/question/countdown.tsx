@@ -5,6 +5,7 @@ import { may } from "../state/access";
 import { runs } from "../state/service";
 import { command } from "../state/service";
 import { runTime } from "../state/run_clock";
+import { t } from "../words/words";
 import "./countdown.css";
 
 /** The warning comes this long before the end, so that there is time to ask for more. */
@@ -17,9 +18,9 @@ export function Countdown({ question }: { question: Question }) {
   const late = left <= WARN_S;
   return (
     <div class={`countdown ${late ? "late" : ""}`}>
-      <TimeLeft left={left} within={prompt.within_s} what="The robot waits for" />
+      <TimeLeft left={left} within={prompt.within_s} what={t("The robot waits for")} />
       <p class="unseen" role="status">
-        {late && left > 0 ? "Less than 25 seconds are left to answer. You can ask for more time." : ""}
+        {late && left > 0 ? t("Less than 25 seconds are left to answer. You can ask for more time.") : ""}
       </p>
     </div>
   );
@@ -39,7 +40,7 @@ export function MoreTime({ question }: { question: Question }) {
   return (
     <div class="more-time">
       <button type="button" class="button" onClick={more}>
-        More time
+        {t("More time")}
       </button>
       {mistake !== "" && (
         <p class="mistake small" role="status">
@@ -60,7 +61,7 @@ export function TimeLeft({ left, within, what }: { left: number; within: number 
       </svg>
       <span class="unseen">{what} </span>
       {clock(left)}
-      <span class="unseen"> more.</span>
+      <span class="unseen"> {t("more.")}</span>
     </p>
   );
 }

@@ -1,5 +1,6 @@
 // What the robot detected, drawn on its picture: where the part must be and where it was seen.
 import type { Detection } from "../wire/types";
+import { t } from "../words/words";
 
 interface Size {
   width: number;
@@ -52,14 +53,14 @@ export function DetectionOverlay({ detection, size }: { detection: Detection; si
             height={2 * expected.half}
             rx={text / 4}
           />
-          <Label {...above(expected, expected.half, size, text)} size={text} text="should be here" />
+          <Label {...above(expected, expected.half, size, text)} size={text} text={t("should be here")} />
         </g>
       )}
       {seen !== null && (
         <g class="seen">
           <circle cx={seen.x} cy={seen.y} r={seen.radius} />
           <path d={`M${seen.x - text / 2} ${seen.y}h${text}M${seen.x} ${seen.y - text / 2}v${text}`} />
-          <Label {...below(seen, seen.radius, size, text)} size={text} text="seen here" />
+          <Label {...below(seen, seen.radius, size, text)} size={text} text={t("seen here")} />
         </g>
       )}
     </svg>

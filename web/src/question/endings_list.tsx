@@ -2,12 +2,13 @@
 import { dismissEnding, endings } from "../state/endings";
 import { plain } from "../tree/words";
 import { robotName } from "./fault_words";
+import { t } from "../words/words";
 import "./endings_list.css";
 
 export function Endings({ run }: { run?: string }) {
   const told = endings.value.filter((each) => run === undefined || each.run === run);
   return (
-    <div class="endings" role="status" aria-label="What became of questions">
+    <div class="endings" role="status" aria-label={t("What became of questions")}>
       {told.map((each) => (
         <div key={each.id} class="ending">
           <p>
@@ -15,7 +16,7 @@ export function Endings({ run }: { run?: string }) {
               {robotName(each.robot)}, {plain(each.about)}:
             </strong> {each.text}
           </p>
-          <button type="button" class="button quiet-button" aria-label="Dismiss" onClick={() => dismissEnding(each.id)}>
+          <button type="button" class="button quiet-button" aria-label={t("Dismiss")} onClick={() => dismissEnding(each.id)}>
             ✕
           </button>
         </div>

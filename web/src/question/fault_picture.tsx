@@ -3,8 +3,10 @@ import { useEffect, useState } from "preact/hooks";
 import type { Question } from "../state/questions";
 import { picturePath } from "../wire/rest";
 import { ClipControls } from "./clip_controls";
-import { spoken } from "./fault_words";
+import { cameraWord, spoken } from "./fault_words";
 import { SeenPicture } from "./seen_picture";
+import { t } from "../words/words";
+import { Told } from "../words/told";
 
 /** The fault, or, once promised help was not seen, what the camera showed then. */
 export function WhatWasSeen({ question }: { question: Question }) {
@@ -16,11 +18,11 @@ export function WhatWasSeen({ question }: { question: Question }) {
     <figure class="fault">
       <SeenPicture
         source={picturePath(picture)}
-        alt={`What the robot's ${camera} camera saw when it last looked`}
+        alt={t("What the robot's {camera} camera saw when it last looked", { camera: cameraWord(camera) })}
         detection={detection}
-        moment="When I last looked"
+        moment={t("When I last looked")}
       />
-      <figcaption class="small quiet">{spoken(camera)} camera</figcaption>
+      <figcaption class="small quiet">{t("{camera} camera", { camera: cameraWord(camera) })}</figcaption>
     </figure>
   );
 }
@@ -38,18 +40,18 @@ function FaultPicture({ question }: { question: Question }) {
     <figure class="fault">
       <SeenPicture
         source={picturePath(shown)}
-        alt={`What the robot's ${camera} camera saw`}
+        alt={t("What the robot's {camera} camera saw", { camera: cameraWord(camera) })}
         size={detection?.size_px ?? null}
         detection={earlier === undefined ? detection : null}
-        moment={earlier === undefined ? "At the fault" : "Before the fault"}
+        moment={earlier === undefined ? t("At the fault") : t("Before the fault")}
       />
       {clip.length > 0 && <ClipControls question={question} frame={frame} onFrame={setFrame} />}
       <figcaption class="small quiet">
-        {spoken(camera)} camera
+        {t("{camera} camera", { camera: cameraWord(camera) })}
         {detection !== null && detection.explanation !== "" && (
           <>
-            {detection.felt ? ". Felt: " : ": "}
-            {spoken(detection.explanation)}.
+            {detection.felt ? t(". Felt: ") : ": "}
+            <Told text={spoken(detection.explanation)} />.
           </>
         )}
       </figcaption>

@@ -4,6 +4,8 @@ import { helperName } from "../state/preferences";
 import * as rest from "../wire/rest";
 import type { BatchWayView } from "../wire/types";
 import { UNDO_MS } from "./answering";
+import { t } from "../words/words";
+import { said } from "../words/said";
 
 export function ForAll({ ways, prompts }: { ways: readonly BatchWayView[]; prompts: readonly string[] }) {
   const [chosen, setChosen] = useState<BatchWayView | null>(null);
@@ -22,20 +24,16 @@ export function ForAll({ ways, prompts }: { ways: readonly BatchWayView[]; promp
     return () => window.clearTimeout(timer);
   }, [chosen, all]);
   return (
-    <div class="for-all" role="group" aria-label={`All ${prompts.length} at once`}>
+    <div class="for-all" role="group" aria-label={t("All {prompts} at once", { prompts: prompts.length })}>
       {chosen === null &&
         ways.map((each) => (
-          <button key={each.way} type="button" class="button" onClick={() => setChosen(each)}>
-            {each.label}, all {prompts.length}
-          </button>
+          <button key={each.way} type="button" class="button" onClick={() => setChosen(each)}>{t("{label}, all {prompts}", { label: said(each.label), prompts: prompts.length })}</button>
         ))}
       {chosen !== null && (
-        <button type="button" class="button" onClick={() => setChosen(null)}>
-          Undo
-        </button>
+        <button type="button" class="button" onClick={() => setChosen(null)}>{t("Undo")}</button>
       )}
       <p class="small" role="status">
-        {chosen !== null && `“${chosen.label}” is sent for all ${prompts.length} in a moment.`}
+        {chosen !== null && t("“{label}” is sent for all {prompts} in a moment.", { label: said(chosen.label), prompts: prompts.length })}
         {mistake !== "" && <span class="mistake">{mistake}</span>}
       </p>
     </div>

@@ -1,6 +1,7 @@
 // What there is to say where no robot asks anything: nothing is called well that is not seen to be.
 import type { ConnectionState } from "../wire/helper_socket";
 import type { RobotView, RunSummary } from "../wire/types";
+import { t, tn } from "../words/words";
 
 const FRESH_MS = 24 * 3_600_000;
 
@@ -34,8 +35,8 @@ export interface Seen {
 
 export function glanceOf({ connection, trouble, runs, robots, ofFleets, known, now }: Seen): Glance {
   if (connection !== "connected" || runs === null) {
-    const more = connection === "connected" ? "Reading what the runs do." : "Questions may wait that are not seen here.";
-    return { sign: "unknown", words: "Not known whether a robot asks anything.", more, failures: [], lost: [], waiting: [] };
+    const more = connection === "connected" ? t("Reading what the runs do.") : t("Questions may wait that are not seen here.");
+    return { sign: "unknown", words: t("Not known whether a robot asks anything."), more, failures: [], lost: [], waiting: [] };
   }
   const goingOn = runs.filter(({ status }) => status === "running" || status === "paused");
   const failures = runs.filter(
@@ -47,13 +48,13 @@ export function glanceOf({ connection, trouble, runs, robots, ofFleets, known, n
   const waiting = goingOn.filter(({ waits }) => waits.length > 0);
   const more = goingOnWords(goingOn);
   if (failures.length + lost.length > 0 || trouble !== null) {
-    return { sign: "bad", words: "No robot asks anything, but not all is well.", more, failures, lost, waiting };
+    return { sign: "bad", words: t("No robot asks anything, but not all is well."), more, failures, lost, waiting };
   }
   if (waiting.length > 0) {
-    return { sign: "bad", words: "No robot asks anything, but one waits to be let go.", more, failures, lost, waiting };
+    return { sign: "bad", words: t("No robot asks anything, but one waits to be let go."), more, failures, lost, waiting };
   }
   const sign = goingOn.length > 0 ? "well" : "idle";
-  return { sign, words: "No robot asks anything.", more, failures, lost, waiting };
+  return { sign, words: t("No robot asks anything."), more, failures, lost, waiting };
 }
 
 /** Whether a run has ended badly within a day. */
@@ -62,9 +63,9 @@ function hasJustFailed({ status, ended }: RunSummary, now: number): boolean {
 }
 
 function goingOnWords(runs: readonly RunSummary[]): string {
-  if (runs.length === 0) return "No run goes on.";
+  if (runs.length === 0) return t("No run goes on.");
   const paused = runs.filter(({ status }) => status === "paused").length;
-  const all = runs.length === 1 ? "One run goes on" : `${runs.length} runs go on`;
+  const all = tn("One run goes on", "{count} runs go on", { count: runs.length });
   if (paused === 0) return `${all}.`;
-  return runs.length === paused ? `${all}, paused.` : `${all}, ${paused} of them paused.`;
+  return runs.length === paused ? t("{all}, paused.", { all }) : t("{all}, {paused} of them paused.", { all, paused });
 }

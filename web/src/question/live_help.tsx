@@ -2,7 +2,9 @@
 import { useLivePicture } from "../run/live_picture";
 import type { Question } from "../state/questions";
 import type { Detection } from "../wire/types";
+import { cameraWord } from "./fault_words";
 import { SeenPicture } from "./seen_picture";
+import { t } from "../words/words";
 
 export function LiveHelp({ question, camera }: { question: Question; camera: string }) {
   const { frame, live } = useLivePicture({ run: question.run, camera, robot: question.robot });
@@ -14,9 +16,9 @@ export function LiveHelp({ question, camera }: { question: Question; camera: str
         ) : (
           <SeenPicture
             source={live.picture}
-            alt={`What the robot's ${camera} camera sees now`}
+            alt={t("What the robot's {camera} camera sees now", { camera: cameraWord(camera) })}
             detection={live.detection ?? whereItIsToBe(question, camera)}
-            moment="Now"
+            moment={t("Now")}
           />
         )}
       </div>

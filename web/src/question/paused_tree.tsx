@@ -3,6 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import { TreeDrawing } from "../tree/tree_drawing";
 import { nodesOfRun, type TreeNode } from "../tree/tree_node";
 import * as rest from "../wire/rest";
+import { t } from "../words/words";
 
 export function PausedTree({ run, node, name }: { run: string; node: string; name: string }) {
   const [nodes, setNodes] = useState<readonly TreeNode[] | null>(null);
@@ -20,7 +21,7 @@ export function PausedTree({ run, node, name }: { run: string; node: string; nam
   if (nodes === null) return <div class="paused-tree" />;
   return (
     <div class="paused-tree">
-      <TreeDrawing nodes={nodes} focus={node} compact label={`Task tree, stopped at ${name}`} />
+      <TreeDrawing nodes={nodes} focus={node} compact label={t("Task tree, stopped at {name}", { name })} />
     </div>
   );
 }

@@ -16,6 +16,8 @@ import { PausedNode } from "./paused_node";
 import { SpeechControls } from "./speech_controls";
 import { SpokenQuestion } from "./spoken_question";
 import { WayEffects, Ways } from "./ways";
+import { t } from "../words/words";
+import { Told } from "../words/told";
 import "./question_card.css";
 
 interface QuestionCardProps {
@@ -50,7 +52,7 @@ export function QuestionCard({ question, besideTree = false }: QuestionCardProps
         <Countdown question={question} />
       </header>
       <h2 id={titled} class="question-text">
-        {withWays ? prompt.headline : prompt.text}
+        <Told text={withWays ? prompt.headline : prompt.text} />
       </h2>
       <div class="question-answers" onPointerMove={act} onPointerDown={act} onFocusCapture={act}>
         {withWays ? (
@@ -69,11 +71,14 @@ export function QuestionCard({ question, besideTree = false }: QuestionCardProps
           {withWays && <WayEffects question={question} />}
           <MoreTime question={question} />
           {withWays && <SpokenQuestion question={question} arming={arming} onAct={act} onAnswer={give} />}
-          {prompt.version > 1 && <p class="quiet small">Asked for the {ordinal(prompt.version)} time.</p>}
+          {prompt.version > 1 && (
+            <p class="quiet small">{t("Asked for the {nth} time.", { nth: ordinal(prompt.version) })}</p>
+          )}
           <SpeechControls question={question} onAct={act} />
           <ClaimStrip question={question} />
           <p class="question-about quiet">
-            {run !== undefined && <a href={`/runs/${question.run}`}>{spoken(run.tree)}</a>} at “{spoken(question.name)}”
+            {run !== undefined && <a href={`/runs/${question.run}`}>{spoken(run.tree)}</a>}{" "}
+            {t("at “{name}”", { name: spoken(question.name) })}
           </p>
           {!besideTree && <PausedNode run={question.run} node={question.node} name={question.name} />}
         </div>
@@ -83,6 +88,15 @@ export function QuestionCard({ question, besideTree = false }: QuestionCardProps
 }
 
 function ordinal(count: number): string {
-  const ending = { 1: "st", 2: "nd", 3: "rd" }[count % 10];
-  return `${count}${Math.floor(count / 10) % 10 === 1 || ending === undefined ? "th" : ending}`;
+  if (Math.floor(count / 10) % 10 === 1) return t("{count}th", { count });
+  switch (count % 10) {
+    case 1:
+      return t("{count}st", { count });
+    case 2:
+      return t("{count}nd", { count });
+    case 3:
+      return t("{count}rd", { count });
+    default:
+      return t("{count}th", { count });
+  }
 }

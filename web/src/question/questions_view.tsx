@@ -9,10 +9,14 @@ import { queue, shown, stopChoosing } from "./queue";
 import { later } from "../app/later";
 import { AwaitedHelpCard, TogetherCard } from "./waiting_cards";
 import { AtAGlance } from "./at_a_glance";
+import { t } from "../words/words";
 import "./questions_view.css";
 
 // Whoever has one question before them needs no list.
-const QueueList = later(() => import("./queue_list").then((module) => module.QueueList));
+const QueueList = later(
+  () => import("./queue_list").then((module) => module.QueueList),
+  () => Promise.resolve(),
+);
 
 const GOING: ReadonlySet<RunStatus> = new Set<RunStatus>(["running", "paused"]);
 
@@ -27,7 +31,7 @@ export function QuestionsView() {
   const beside = queue.value.length > 1 || (question !== null && waiting);
   return (
     <section class={`page questions ${beside ? "with-side" : ""}`}>
-      <h1 class="unseen">Questions</h1>
+      <h1 class="unseen">{t("Questions")}</h1>
       <Endings />
       <div class="questions-main">
         {held.map((each) => <RunWaits key={each.id} run={each.id} tree={each.tree} waits={each.waits} going />)}
@@ -36,7 +40,7 @@ export function QuestionsView() {
         {question === null && !waiting && <AtAGlance />}
       </div>
       {beside && (
-        <aside class="questions-side" aria-label="Also going on">
+        <aside class="questions-side" aria-label={t("Also going on")}>
           {queue.value.length > 1 && <QueueList shown={question} />}
           {waiting && <Waiting />}
         </aside>

@@ -8,13 +8,15 @@ import { faultInWords, robotName, spoken } from "./fault_words";
 import { ForAll } from "./for_all";
 import { choose, queue } from "./queue";
 import { useBatches } from "./use_batches";
+import { t } from "../words/words";
+import { Told } from "../words/told";
 import "./queue_list.css";
 
 export function QueueList({ shown }: { shown: Question | null }) {
   const batches = useBatches();
   return (
     <section aria-labelledby="queue-title" class="queue">
-      <h2 id="queue-title">{queue.value.length} questions</h2>
+      <h2 id="queue-title">{t("{count} questions", { count: queue.value.length })}</h2>
       <ol>
         {batches.map((batch) => (
           <li key={batch.questions[0]?.prompt}>
@@ -35,7 +37,7 @@ function Batch({ batch, shown }: { batch: QuestionBatchView; shown: Question | n
   return (
     <details class="queue-batch" open={questions.some((each) => each.dialogue === shown?.dialogue)}>
       <summary>
-        <b>{questions.length}×</b> {headline}
+        <b>{questions.length}×</b> <Told text={headline} />
         <Left dialogue={questions[0]?.dialogue} />
       </summary>
       <ol>
@@ -67,7 +69,8 @@ function Entry({ entry, shown }: { entry: QuestionView; shown: Question | null }
       </span>
       <span>{faultInWords(question)}</span>
       <span class="queue-where">
-        {entry.place !== null && `To ${spoken(entry.place)}. `}Attempt {entry.attempt} of {entry.attempts}
+        {entry.place !== null && `${t("To {place}.", { place: spoken(entry.place) })} `}
+        {t("Attempt {attempt} of {attempts}", { attempt: entry.attempt, attempts: entry.attempts })}
       </span>
       <Taken by={entry.claimed_by} asked={entry.to} />
     </button>
@@ -84,7 +87,7 @@ function Clock({ question }: { question: Question }) {
   if (left === null) return null;
   return (
     <span class="queue-left">
-      <span class="unseen">waits for </span>
+      <span class="unseen">{t("waits for")} </span>
       {clock(left)}
     </span>
   );
@@ -93,7 +96,9 @@ function Clock({ question }: { question: Question }) {
 function Taken({ by, asked }: { by: string | null; asked: string | null }) {
   if (by === null) {
     if (asked === null) return null;
-    return <span class="badge">{asked === helperName.value ? "You are asked" : `${asked} is asked`}</span>;
+    return (
+      <span class="badge">{asked === helperName.value ? t("You are asked") : t("{asked} is asked", { asked })}</span>
+    );
   }
-  return <span class="badge">{by === helperName.value ? "You are on it" : `${by} is on it`}</span>;
+  return <span class="badge">{by === helperName.value ? t("You are on it") : t("{by} is on it", { by })}</span>;
 }

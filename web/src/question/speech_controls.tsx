@@ -3,19 +3,20 @@ import { useState } from "preact/hooks";
 import { may } from "../state/access";
 import { keys, keysOn } from "../state/preferences";
 import type { Question } from "../state/questions";
-import { lastHeard, type SpeechPhase, speechLacks, speechPhase } from "../speech/speech_state";
+import { lastHeard, listensTo, type SpeechPhase, speechLacks, speechPhase } from "../speech/speech_state";
 import { switchOff, switchOn } from "../speech/speech_switch";
 import { repeat } from "./repeating";
+import { t } from "../words/words";
 import "./speech_controls.css";
 
 const PHASES: Readonly<Record<SpeechPhase, string>> = {
   off: "",
-  starting: "Starting …",
-  idle: "Ready to speak",
-  speaking: "The robot speaks",
-  listening: "Speak now: yes or no",
-  hearing: "Listening to you …",
-  gave_up: "Not understood. Please use the buttons.",
+  starting: t("Starting …"),
+  idle: t("Ready to speak"),
+  speaking: t("The robot speaks"),
+  listening: t("Speak now: yes or no"),
+  hearing: t("Listening to you …"),
+  gave_up: t("Not understood. Please use the buttons."),
 };
 
 export function SpeechControls({ question, onAct }: { question: Question; onAct(): void }) {
@@ -37,7 +38,7 @@ export function SpeechControls({ question, onAct }: { question: Question; onAct(
             <rect x="7" y="2" width="6" height="10" rx="3" />
             <path d="M4 9.5a6 6 0 0 0 12 0M10 15.5V18" />
           </svg>
-          Listen and speak
+          {t("Listen and speak")}
         </button>
       )}
       <button
@@ -48,15 +49,19 @@ export function SpeechControls({ question, onAct }: { question: Question; onAct(
           repeat(question);
         }}
       >
-        Repeat
+        {t("Repeat")}
         {keysOn.value && keys.value.repeat !== "" && <kbd aria-hidden="true">{keys.value.repeat.toUpperCase()}</kbd>}
       </button>
       <p class={`speech-phase ${phase}`} role="status">
-        {PHASES[phase]}
+        {phase === "listening" && listensTo.value !== null
+          ? t("Speak now, in {language}: “{yes}” or “{no}”", listensTo.value)
+          : PHASES[phase]}
         {heard !== null && (
-          <span class="heard">{heard.phrase === null ? "That was no yes or no." : `Heard: “${heard.phrase}”`}</span>
+          <span class="heard">
+            {heard.phrase === null ? t("That was no yes or no.") : t("Heard: “{phrase}”", { phrase: heard.phrase })}
+          </span>
         )}
-        {failed && "The spoken side could not be loaded. Is the service there?"}
+        {failed && t("The spoken side could not be loaded. Is the service there?")}
       </p>
       {speechLacks.value !== "" && <p class="speech-lacks small">{speechLacks.value}</p>}
     </div>

@@ -1,10 +1,13 @@
 // What the robot asks aloud, to be answered with yes or no: by voice, by key, or here.
 import { keys, keysOn } from "../state/preferences";
 import type { Question } from "../state/questions";
-import type { Answer } from "./answering";
-import { AnswerKey, WORDS } from "./answers";
+import { type Answer, WORDS } from "./answering";
+import { AnswerKey } from "./answers";
 import type { Arming } from "./arming";
 import { takesAnswers } from "./takes_answers";
+import { t } from "../words/words";
+import { said } from "../words/said";
+import { Told } from "../words/told";
 
 interface SpokenQuestionProps {
   question: Question;
@@ -21,8 +24,8 @@ export function SpokenQuestion({ question, arming, onAct, onAnswer }: SpokenQues
   const no = prompt.answers.find(({ value }) => value === "no");
   return (
     <section class="spoken-question">
-      <h3>{prompt.text}</h3>
-      <div class="spoken-answers" role="group" aria-label="Yes or no" onPointerMove={onAct} onFocusCapture={onAct}>
+      <h3><Told text={prompt.text} /></h3>
+      <div class="spoken-answers" role="group" aria-label={t("Yes or no")} onPointerMove={onAct} onFocusCapture={onAct}>
         {prompt.answers.map(({ value }) => (
           <button
             key={value}
@@ -38,7 +41,12 @@ export function SpokenQuestion({ question, arming, onAct, onAnswer }: SpokenQues
         ))}
       </div>
       <p class="quiet small">
-        {WORDS.yes} is “{first.label}”. {WORDS.no}: {no?.effect}
+        {t("{yes} is “{label}”. {no}: {effect}", {
+          yes: WORDS.yes,
+          label: said(first.label),
+          no: WORDS.no,
+          effect: said(no?.effect ?? ""),
+        })}
       </p>
     </section>
   );

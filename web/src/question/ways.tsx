@@ -2,11 +2,13 @@
 import { keysOn } from "../state/preferences";
 import type { Question } from "../state/questions";
 import type { WayOption } from "../wire/types";
-import { isHeld } from "./answering";
+import { isHeld, quoted } from "./answering";
 import { AnsweringNote } from "./answering_note";
 import type { Arming } from "./arming";
 import { HeldBack } from "./held_back";
 import { takesAnswers } from "./takes_answers";
+import { t } from "../words/words";
+import { Told } from "../words/told";
 import "./ways.css";
 
 interface WaysProps {
@@ -21,18 +23,18 @@ export function Ways({ question, arming, onChoose }: WaysProps) {
   const closed = !takesAnswers(question, arming);
   return (
     <div class="answering">
-      <div class="ways" role="group" aria-label="What you can do">
+      <div class="ways" role="group" aria-label={t("What you can do")}>
         {prompt.ways.map((each, index) => (
           <button
             key={each.way}
             type="button"
-            class={`way ${helps(each) ? "" : "not-now"} ${isHeld(prompt.prompt, `“${each.label}”`) ? "held" : ""}`}
+            class={`way ${helps(each) ? "" : "not-now"} ${isHeld(prompt.prompt, quoted(each.label)) ? "held" : ""}`}
             aria-disabled={closed}
             aria-describedby={effectOf(dialogue, each)}
             aria-keyshortcuts={keysOn.value ? String(index + 1) : undefined}
             onClick={() => onChoose(each.way)}
           >
-            {each.label}
+            <Told text={each.label} />
             {keysOn.value && <kbd aria-hidden="true">{index + 1}</kbd>}
           </button>
         ))}
@@ -47,17 +49,17 @@ export function Ways({ question, arming, onChoose }: WaysProps) {
 export function WayEffects({ question: { prompt, dialogue } }: { question: Question }) {
   if (prompt === null) return null;
   return (
-    <dl class="way-effects" aria-label="What each does">
+    <dl class="way-effects" aria-label={t("What each does")}>
       {prompt.ways.map((each) => (
         <div key={each.way}>
-          <dt>{each.label}</dt>
-          <dd id={effectOf(dialogue, each)}>{each.effect}</dd>
+          <dt><Told text={each.label} /></dt>
+          <dd id={effectOf(dialogue, each)}><Told text={each.effect} /></dd>
         </div>
       ))}
       {prompt.timeout_effect !== "" && (
         <div>
-          <dt>Without an answer</dt>
-          <dd>{prompt.timeout_effect}</dd>
+          <dt>{t("Without an answer")}</dt>
+          <dd><Told text={prompt.timeout_effect} /></dd>
         </div>
       )}
     </dl>

@@ -7,6 +7,8 @@ import type { RequestView } from "../wire/types";
 import { said } from "./places";
 import { isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "./request_words";
 import { type SiteClock, when } from "./when";
+import { t } from "../words/words";
+import { Told } from "../words/told";
 
 interface FollowedProps {
   request: RequestView;
@@ -22,7 +24,7 @@ export function Followed({ request, clock, changed }: FollowedProps) {
     rest.cancelRequest(request.site, request.name).then(changed, (error: Error) => setFailure(error.message));
   const { status, reason } = request;
   return (
-    <section class="panel followed" aria-label="Your request">
+    <section class="panel followed" aria-label={t("Your request")}>
       <h2 ref={heading} tabIndex={-1}>
         {wanted(request, said)}
       </h2>
@@ -33,13 +35,13 @@ export function Followed({ request, clock, changed }: FollowedProps) {
         </span>
       </p>
       <p>{soon(request, clock)}</p>
-      {reason !== null && <p class="small">{reason.charAt(0).toUpperCase() + reason.slice(1)}.</p>}
+      {reason !== null && <p class="small"><Told text={`${reason.charAt(0).toUpperCase() + reason.slice(1)}.`} /></p>}
       <p class="mistake" role="alert">
         {failure}
       </p>
       {!isOver(request) && status !== "returning" && may("helper") && (
         <button class="button" type="button" onClick={() => void cancel()}>
-          Cancel it
+          {t("Cancel it")}
         </button>
       )}
     </section>
@@ -50,12 +52,15 @@ export function Followed({ request, clock, changed }: FollowedProps) {
 export function soon(request: RequestView, clock: SiteClock): string {
   const { expected, status } = request;
   if (isOver(request)) return OVER[status] ?? "";
-  if (expected === null) return "When it will be done is not known yet.";
-  return `${robotName(expected.robot)} is expected to be done with it ${when(expected.done_s, clock, new Date())}.`;
+  if (expected === null) return t("When it will be done is not known yet.");
+  return t("{robot} is expected to be done with it {when}.", {
+    robot: robotName(expected.robot),
+    when: when(expected.done_s, clock, new Date()),
+  });
 }
 
 const OVER: Partial<Record<RequestView["status"], string>> = {
-  done: "It is done.",
-  cancelled: "It is wanted no more.",
-  failed: "It was not done.",
+  done: t("It is done."),
+  cancelled: t("It is wanted no more."),
+  failed: t("It was not done."),
 };

@@ -4,6 +4,8 @@ import * as rest from "../wire/rest";
 import { SpeakButton } from "../speech/speak_button";
 import type { RequestDocument } from "./use_asking";
 import { timeOf } from "./when";
+import { t } from "../words/words";
+import { Told } from "../words/told";
 
 interface InWordsProps {
   site: string;
@@ -45,7 +47,7 @@ export function InWords({ site, robot, example, understood }: InWordsProps) {
         void say(words);
       }}
     >
-      <label for={id}>Say it in words, such as “{example}”</label>
+      <label for={id}>{t("Say it in words, such as “{example}”", { example })}</label>
       <div>
         <input
           id={id}
@@ -56,10 +58,10 @@ export function InWords({ site, robot, example, understood }: InWordsProps) {
           onInput={(event) => setWords(event.currentTarget.value)}
         />
         <button class="button" disabled={busy || words.trim() === ""}>
-          Say it
+          {t("Say it")}
         </button>
         <SpeakButton
-          label="Speak"
+          label={t("Speak")}
           heard={(said) => {
             setWords(said);
             void say(said);
@@ -67,7 +69,7 @@ export function InWords({ site, robot, example, understood }: InWordsProps) {
         />
       </div>
       <p class="mistake" role="alert">
-        {question}
+        <Told text={question} />
       </p>
     </form>
   );

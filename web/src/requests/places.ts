@@ -1,4 +1,5 @@
 // Places of a building, as people write and read them.
+import { t } from "../words/words";
 
 /** `F1/101` as people read it. */
 export function said(place: string): string {
@@ -12,9 +13,14 @@ export function placeMeant(written: string, places: readonly string[]): string |
   if (exact !== undefined) return exact;
   const found = places.filter((place) => plain(place) === words || plain(place.slice(place.indexOf("/") + 1)) === words);
   const [only] = found;
-  if (only === undefined) return { mistake: `There is no place “${written.trim()}” here.` };
+  if (only === undefined) return { mistake: t("There is no place “{written}” here.", { written: written.trim() }) };
   if (found.length === 1) return only;
-  return { mistake: `“${written.trim()}” is on several floors: choose ${found.map(said).join(" or ")}.` };
+  return {
+    mistake: t("“{written}” is on several floors: choose {places}.", {
+      written: written.trim(),
+      places: found.map(said).join(t(" or ")),
+    }),
+  };
 }
 
 function plain(written: string): string {

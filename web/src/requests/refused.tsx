@@ -1,6 +1,8 @@
 // Why something cannot be done as it is asked for, and when it could be.
 import type { Asking, RequestDocument } from "./use_asking";
 import { type SiteClock, when } from "./when";
+import { t } from "../words/words";
+import { Told } from "../words/told";
 
 interface RefusedProps {
   refused: Extract<Asking, { phase: "refused" }>;
@@ -13,18 +15,18 @@ export function Refused({ refused: { request, why, by }, clock, ask }: RefusedPr
     <div class="refused">
       <div role="alert">
         <p class="mistake">{refusedInShort(by)}</p>
-        {by !== null && <p>No robot gets it done so soon.</p>}
-        {by === null && <p>{asSentence(why)}</p>}
+        {by !== null && <p>{t("No robot gets it done so soon.")}</p>}
+        {by === null && <p><Told text={asSentence(why)} /></p>}
       </div>
       {by !== null && (
         <details class="small">
-          <summary>Why not</summary>
-          <p>{asSentence(why)}</p>
+          <summary>{t("Why not")}</summary>
+          <p><Told text={asSentence(why)} /></p>
         </details>
       )}
       {by !== null && (
         <button class="button primary" type="button" onClick={() => ask({ ...request, latest_s: by })}>
-          Ask for it {when(by, clock, new Date())} instead
+          {t("Ask for it {when} instead", { when: when(by, clock, new Date()) })}
         </button>
       )}
     </div>
@@ -33,7 +35,7 @@ export function Refused({ refused: { request, why, by }, clock, ask }: RefusedPr
 
 /** The same for whoever hears it. */
 export function refusedInShort(by: number | null): string {
-  return by === null ? "That cannot be done." : "That cannot be done by then.";
+  return by === null ? t("That cannot be done.") : t("That cannot be done by then.");
 }
 
 function asSentence(why: string): string {

@@ -1,16 +1,17 @@
 // How the console speaks of requests: what is wanted, how far it is, and when it is done.
 import { robotName } from "../question/fault_words";
 import type { RequestStatus, RequestView } from "../wire/types";
+import { t, tn } from "../words/words";
 
 export const STATUS_WORDS: Readonly<Record<RequestStatus, string>> = {
-  booked: "Booked",
-  waiting: "Waits for a robot",
-  under_way: "Under way",
-  returning: "Goes back",
-  done: "Done",
-  refused: "Refused",
-  cancelled: "Cancelled",
-  failed: "Failed",
+  booked: t("Booked"),
+  waiting: t("Waits for a robot"),
+  under_way: t("Under way"),
+  returning: t("Goes back"),
+  done: t("Done"),
+  refused: t("Refused"),
+  cancelled: t("Cancelled"),
+  failed: t("Failed"),
 };
 
 /** Beside the word and the colour, a sign for those who do not tell colours. */
@@ -37,13 +38,17 @@ export function wanted({ what }: RequestView, named = (place: string) => place):
   const at = (field: string) => named(said(field));
   switch (what.kind) {
     case "transport":
-      return `Bring ${said("what")} from ${at("origin")} to ${at("destination")}`;
+      return t("Bring {what} from {from} to {to}", { what: said("what"), from: at("origin"), to: at("destination") });
     case "deliver_message":
-      return `Tell “${said("message")}” at ${at("place")}`;
+      return t("Tell “{message}” at {place}", { message: said("message"), place: at("place") });
     case "escort":
-      return `Show ${said("person")} the way from ${at("origin")} to ${at("destination")}`;
+      return t("Show {person} the way from {from} to {to}", {
+        person: said("person"),
+        from: at("origin"),
+        to: at("destination"),
+      });
     default:
-      return `Come to ${at("place")}`;
+      return t("Come to {place}", { place: at("place") });
   }
 }
 
@@ -51,12 +56,12 @@ export function wanted({ what }: RequestView, named = (place: string) => place):
 export function expectation(request: RequestView, now: number | undefined): string {
   const { expected } = request;
   if (isOver(request) || expected === null || now === undefined) return "";
-  return `${robotName(expected.robot)}, done ${within(expected.done_s - now)}`;
+  return t("{robot}, done {within}", { robot: robotName(expected.robot), within: within(expected.done_s - now) });
 }
 
 /** "in less than a minute", "in about 4 minutes" */
 export function within(seconds: number): string {
   const minutes = Math.round(seconds / 60);
-  if (minutes < 1) return "in less than a minute";
-  return `in about ${minutes} ${minutes === 1 ? "minute" : "minutes"}`;
+  if (minutes < 1) return t("in less than a minute");
+  return tn("in about {count} minute", "in about {count} minutes", { count: minutes });
 }

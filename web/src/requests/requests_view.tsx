@@ -12,6 +12,8 @@ import { followed, type RequestDocument, useAsking } from "./use_asking";
 import { useKinds } from "./use_kinds";
 import { useRequests } from "./use_requests";
 import { WishForm } from "./wish_form";
+import { t } from "../words/words";
+import { Told } from "../words/told";
 import "./requests.css";
 
 /** Whose robots are asked, where several sites take requests. */
@@ -23,10 +25,10 @@ export function RequestsView() {
   return (
     <section class="page">
       <div class="page-head">
-        <h1>Requests</h1>
+        <h1>{t("Requests")}</h1>
         {sites !== null && sites.length > 1 && site !== undefined && <SiteChoice sites={sites} site={site} />}
       </div>
-      {sites === null && <p class="quiet">Loading …</p>}
+      {sites === null && <p class="quiet">{t("Loading …")}</p>}
       {sites !== null && site === undefined && <NobodyTakesAny />}
       {site !== undefined && <OfSite key={site.id} site={site} />}
     </section>
@@ -36,7 +38,7 @@ export function RequestsView() {
 function SiteChoice({ sites, site }: { sites: readonly SiteView[]; site: SiteView }) {
   return (
     <div class="field">
-      <label for="requests-site">Building</label>
+      <label for="requests-site">{t("Building")}</label>
       <select id="requests-site" value={site.id} onChange={(event) => (chosen.value = event.currentTarget.value)}>
         {sites.map((each) => (
           <option key={each.id} value={each.id}>
@@ -51,9 +53,8 @@ function SiteChoice({ sites, site }: { sites: readonly SiteView[]; site: SiteVie
 export function NobodyTakesAny() {
   return (
     <div class="panel empty">
-      <h2>No robots take requests</h2>
-      <p class="quiet">
-        Robots of a building do, once it is opened as a site with a fleet: <code>mend site open SCENE --world building --fleet live</code>.
+      <h2>{t("No robots take requests")}</h2>
+      <p class="quiet">{t("Robots of a building do, once it is opened as a site with a fleet:")}{" "}<code>mend site open SCENE --world building --fleet live</code>.
       </p>
     </div>
   );
@@ -77,15 +78,15 @@ function OfSite({ site }: { site: SiteView }) {
       {fleet !== null && may("helper") && (
         <WishForm fleet={fleet} kinds={kinds} clock={clock} asking={asking} ask={askAndRead} forget={forget} />
       )}
-      {fleet !== null && !may("helper") && <p class="quiet">{whyNot("Asking for something", "helper")}</p>}
-      {requests === null && failure === "" && <p class="quiet">Loading …</p>}
+      {fleet !== null && !may("helper") && <p class="quiet">{whyNot(t("Asking for something"), "helper")}</p>}
+      {requests === null && failure === "" && <p class="quiet">{t("Loading …")}</p>}
       {requests !== null && (
         <>
-          <h2>Open</h2>
-          {open.length === 0 && <p class="quiet">Nothing is asked for just now.</p>}
-          <RequestList label="Open requests" requests={open} now={fleet?.now_s} changed={again} />
-          {over.length > 0 && <h2>Over</h2>}
-          <RequestList label="Requests that are over" requests={over} now={fleet?.now_s} changed={again} />
+          <h2>{t("Open")}</h2>
+          {open.length === 0 && <p class="quiet">{t("Nothing is asked for just now.")}</p>}
+          <RequestList label={t("Open requests")} requests={open} now={fleet?.now_s} changed={again} />
+          {over.length > 0 && <h2>{t("Over")}</h2>}
+          <RequestList label={t("Requests that are over")} requests={over} now={fleet?.now_s} changed={again} />
         </>
       )}
     </>
@@ -125,7 +126,7 @@ function Row({ request, now, changed }: { request: RequestView; now: number | un
       <span class="request-wanted">
         <strong>{wanted(request)}</strong>
         <span class="small quiet">{expectation(request, now)}</span>
-        {reason !== null && <span class="small">{reason.charAt(0).toUpperCase() + reason.slice(1)}.</span>}
+        {reason !== null && <span class="small"><Told text={`${reason.charAt(0).toUpperCase() + reason.slice(1)}.`} /></span>}
         {failure !== "" && (
           <span class="mistake small" role="alert">
             {failure}
@@ -133,9 +134,7 @@ function Row({ request, now, changed }: { request: RequestView; now: number | un
         )}
       </span>
       {changed !== undefined && !isOver(request) && status !== "returning" && may("helper") && (
-        <button class="button" type="button" aria-label={`Cancel: ${wanted(request)}`} onClick={() => void cancel()}>
-          Cancel
-        </button>
+        <button class="button" type="button" aria-label={t("Cancel: {request}", { request: wanted(request) })} onClick={() => void cancel()}>{t("Cancel")}</button>
       )}
     </li>
   );

@@ -1,5 +1,7 @@
 // Moments of a building's clock, as people say them by their own.
 import { within } from "./request_words";
+import { t } from "../words/words";
+import { locale } from "../words/language";
 
 /** A building's clock: what it shows (seconds), and how fast it goes beside people's. */
 export interface SiteClock {
@@ -14,12 +16,14 @@ export function when(moment: number, { now, speed }: SiteClock, today: Date): st
   if (speed === "max") return within(moment - now);
   const left = Math.max(0, (moment - now) / speed);
   const then = new Date(today.getTime() + 1000 * left);
-  const at = `at ${timeOf(then)}`;
+  const at = t("at {time}", { time: timeOf(then) });
   if (left < SOON_S) return `${within(left)}, ${at}`;
-  return then.toDateString() === today.toDateString() ? at : `on ${WEEKDAYS[then.getDay()]} ${at}`;
+  return then.toDateString() === today.toDateString()
+    ? at
+    : t("on {weekday} {at}", { weekday: WEEKDAY.format(then), at });
 }
 
-const WEEKDAYS = ["Sunday", "Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday"];
+const WEEKDAY = new Intl.DateTimeFormat(locale, { weekday: "long" });
 
 /** As on a clock of 24 hours. */
 export function timeOf(moment: Date): string {

@@ -1,4 +1,6 @@
 // What somebody fills in, and the request that it is.
+import { t } from "../words/words";
+
 export type Kind = "transport" | "deliver_message" | "go_to_room" | "escort";
 
 export interface Wish {
@@ -30,25 +32,25 @@ const LONGEST_NAME = 40;
 /** What is missing, in a sentence; empty where nothing is. */
 export function missing(wish: Wish): string {
   const minutes = Number(wish.within);
-  if (wish.within !== "" && !(minutes > 0)) return "Say in how many minutes it has to be done, or leave that empty.";
+  if (wish.within !== "" && !(minutes > 0)) return t("Say in how many minutes it has to be done, or leave that empty.");
   switch (wish.kind) {
     case "transport":
-      if (wish.what.trim() === "") return "Say what is to be brought.";
+      if (wish.what.trim() === "") return t("Say what is to be brought.");
       return endsMissing(wish);
     case "deliver_message":
-      if (wish.message.trim() === "") return "Say what is to be told.";
-      return wish.place === "" ? "Say where." : "";
+      if (wish.message.trim() === "") return t("Say what is to be told.");
+      return wish.place === "" ? t("Say where.") : "";
     case "go_to_room":
-      return wish.place === "" ? "Say where." : "";
+      return wish.place === "" ? t("Say where.") : "";
     case "escort":
-      if (wish.person.trim() === "") return "Say who is to be shown the way.";
+      if (wish.person.trim() === "") return t("Say who is to be shown the way.");
       return endsMissing(wish);
   }
 }
 
 function endsMissing({ origin, destination }: Wish): string {
-  if (origin === "" || destination === "") return "Say from where, and to where.";
-  return origin === destination ? "It is there already: choose another place." : "";
+  if (origin === "" || destination === "") return t("Say from where, and to where.");
+  return origin === destination ? t("It is there already: choose another place.") : "";
 }
 
 /** What tells a request from others of the same words. */

@@ -8,12 +8,13 @@ import { Refused } from "./refused";
 import type { RequestDocument, UseAsking } from "./use_asking";
 import { type Kind, missing, newName, NO_WISH, requestOf, type Wish } from "./wish";
 import type { SiteClock } from "./when";
+import { t } from "../words/words";
 
 const KINDS: readonly (readonly [Kind, string, string])[] = [
-  ["transport", "Bring something", "A robot fetches it and hands it over."],
-  ["deliver_message", "Tell something", "A robot comes and tells it."],
-  ["go_to_room", "Have a robot come", "It comes, and goes on to whoever else wants it."],
-  ["escort", "Show somebody the way", "A robot meets them and goes ahead."],
+  ["transport", t("Bring something"), t("A robot fetches it and hands it over.")],
+  ["deliver_message", t("Tell something"), t("A robot comes and tells it.")],
+  ["go_to_room", t("Have a robot come"), t("It comes, and goes on to whoever else wants it.")],
+  ["escort", t("Show somebody the way"), t("A robot meets them and goes ahead.")],
 ];
 
 interface WishFormProps extends UseAsking {
@@ -51,7 +52,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
   }
   return (
     <section class="panel wish" aria-labelledby="wish-heading">
-      <h2 id="wish-heading">Ask for something</h2>
+      <h2 id="wish-heading">{t("Ask for something")}</h2>
       {inWords === null ? (
         <InWords
           site={fleet.site}
@@ -75,14 +76,14 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
       )}
       <form
         class="wish"
-        aria-label="Fill in what you want"
+        aria-label={t("Fill in what you want")}
         onSubmit={(event) => {
           event.preventDefault();
           void send();
         }}
       >
         <fieldset class="wish-kinds">
-          <legend class="label">Or fill in what you want</legend>
+          <legend class="label">{t("Or fill in what you want")}</legend>
           <div class="choices">
             {KINDS.filter(([kind]) => kind !== "escort" || kinds.includes(kind)).map(([kind, name, about]) => (
               <label key={kind} class="choice">
@@ -97,24 +98,24 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
         </fieldset>
         <div class="wish-fields">
           {wish.kind === "transport" && (
-            <Words label="What is to be brought" value={wish.what} onInput={(what) => fill({ what })} />
+            <Words label={t("What is to be brought")} value={wish.what} onInput={(what) => fill({ what })} />
           )}
           {wish.kind === "escort" && (
-            <Words label="Who is to be shown the way" value={wish.person} onInput={(person) => fill({ person })} />
+            <Words label={t("Who is to be shown the way")} value={wish.person} onInput={(person) => fill({ person })} />
           )}
           {wish.kind === "deliver_message" && (
-            <Words label="What is to be told" value={wish.message} onInput={(message) => fill({ message })} />
+            <Words label={t("What is to be told")} value={wish.message} onInput={(message) => fill({ message })} />
           )}
           {wish.kind === "transport" || wish.kind === "escort" ? (
             <>
-              <PlaceField label="From" list={list} value={wish.origin} onInput={(origin) => fill({ origin })} />
-              <PlaceField label="To" list={list} value={wish.destination} onInput={(destination) => fill({ destination })} />
+              <PlaceField label={t("From")} list={list} value={wish.origin} onInput={(origin) => fill({ origin })} />
+              <PlaceField label={t("To|where")} list={list} value={wish.destination} onInput={(destination) => fill({ destination })} />
             </>
           ) : (
-            <PlaceField label="Where" list={list} value={wish.place} onInput={(place) => fill({ place })} />
+            <PlaceField label={t("Where")} list={list} value={wish.place} onInput={(place) => fill({ place })} />
           )}
           <div class="field">
-            <label for="wish-within">Within minutes (optional)</label>
+            <label for="wish-within">{t("Within minutes (optional)")}</label>
             <input
               id="wish-within"
               type="text"
@@ -135,7 +136,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
         </p>
         <div class="wish-buttons">
           <button class="button primary" type="submit" disabled={busy}>
-            Ask for it
+            {t("Ask for it")}
           </button>
         </div>
       </form>
@@ -144,7 +145,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
   );
 }
 
-/** A sentence about places that are there, on different floors where there are several. */
+/** A sentence in English, as it is understood, about places that are there, on different floors where there are several. */
 function exampleFor(places: readonly string[]): string {
   const floors = [...byFloor(places).values()];
   const [origin] = floors[0] ?? [];
@@ -202,7 +203,7 @@ function PlaceField({ label, list, value, onInput }: PlaceFieldProps) {
         id={id}
         type="text"
         autocomplete="off"
-        placeholder="Room"
+        placeholder={t("Room")}
         list={list}
         value={value}
         onInput={(event) => onInput(event.currentTarget.value)}

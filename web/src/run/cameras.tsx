@@ -7,11 +7,12 @@ import { type KeptPicture, keptPictures, ownerOf, pictureNear } from "./camera_r
 import { RecordButton } from "./record_button";
 import { useLivePicture } from "./live_picture";
 import type { Moment } from "./moment";
+import { decimal, t } from "../words/words";
 import "./cameras.css";
 
 const CAMERAS = [
-  ["head", "Head camera"],
-  ["forearm", "Forearm camera"],
+  ["head", t("Head camera")],
+  ["forearm", t("Forearm camera")],
 ] as const;
 
 interface Props {
@@ -25,7 +26,7 @@ export function Cameras({ run, moment, status }: Props) {
   const goesOn = status === "running" || status === "paused";
   return (
     <section class="panel cameras" aria-labelledby="cameras-title">
-      <h2 id="cameras-title">Cameras</h2>
+      <h2 id="cameras-title">{t("Cameras")}</h2>
       {goesOn && <RecordButton key={run} run={run} />}
       <div class="cameras-both">
         {CAMERAS.map(([camera, title]) => (
@@ -71,14 +72,18 @@ function PastPicture(props: { kept: readonly KeptPicture[]; camera: string; titl
   const { kept, camera, title, moment } = props;
   const nearest = pictureNear(kept, camera, moment.time.value);
   if (nearest === null) {
-    return <p class="camera-none">No picture is kept of this moment. Those around faults are, and what somebody had recorded.</p>;
+    return (
+      <p class="camera-none">
+        {t("No picture is kept of this moment. Those around faults are, and what somebody had recorded.")}
+      </p>
+    );
   }
   const owner = ownerOf(kept, nearest);
   return (
     <>
-      <img src={rest.picturePath(nearest.picture)} alt={`${title} at ${nearest.time.toFixed(1)} s`} />
+      <img src={rest.picturePath(nearest.picture)} alt={t("{title} at {time} s", { title, time: decimal(nearest.time, 1) })} />
       <p class="camera-when small">
-        {nearest.time.toFixed(1)} s{owner !== null && ` · ${owner}`}
+        {decimal(nearest.time, 1)} s{owner !== null && ` · ${owner}`}
       </p>
     </>
   );
@@ -88,7 +93,11 @@ function LivePicture({ run, camera, title }: { run: string; camera: string; titl
   const { frame, live } = useLivePicture({ run, camera });
   return (
     <div ref={frame} class="camera-frame">
-      {live.picture === null ? <p class="camera-none">{live.reason}</p> : <img src={live.picture} alt={`${title}, live`} />}
+      {live.picture === null ? (
+        <p class="camera-none">{live.reason}</p>
+      ) : (
+        <img src={live.picture} alt={t("{title}, live", { title })} />
+      )}
     </div>
   );
 }

@@ -3,6 +3,7 @@ import { KIND_MEANINGS, plain } from "../tree/words";
 import type { NodeStarted, NodeView, RunResult } from "../wire/types";
 import { whyChosen } from "./choice";
 import { clock } from "./run_words";
+import { decimal, t } from "../words/words";
 import "./choice_panel.css";
 
 const SHOWN_AT_MOST = 12;
@@ -20,19 +21,19 @@ interface ChoicePanelProps {
 export function ChoicePanel({ node, choices, result, onChoose }: ChoicePanelProps) {
   const last = choices.at(-1) ?? null;
   return (
-    <section class="panel choice-panel" aria-label="Choice">
-      <h2>{node === null ? "The last choice" : `${plain(node.name)} (${KIND_MEANINGS[node.kind]})`}</h2>
+    <section class="panel choice-panel" aria-label={t("Choice")}>
+      <h2>{node === null ? t("The last choice") : `${plain(node.name)} (${KIND_MEANINGS[node.kind]})`}</h2>
       {last === null ? (
-        <p class="quiet small">{node === null ? "Not started yet." : notChosen(node, result !== null)}</p>
+        <p class="quiet small">{node === null ? t("Not started yet.") : notChosen(node, result !== null)}</p>
       ) : (
         <Choice choice={last} />
       )}
       {node !== null && choices.length > 1 && (
         <p class="small choice-earlier">
-          Earlier:{" "}
+          {t("Earlier:")}{" "}
           {choices.slice(-9, -1).map((choice) => (
             <button key={choice.seq} type="button" class="bare link" onClick={() => onChoose(choice)}>
-              attempt {choice.attempt} at {clock(choice.time)}
+              {t("attempt {attempt} at {time}", { attempt: choice.attempt, time: clock(choice.time) })}
             </button>
           ))}
         </p>
@@ -43,16 +44,18 @@ export function ChoicePanel({ node, choices, result, onChoose }: ChoicePanelProp
 
 /** Of a node that no robot has started: a goal, or a leaf that waits or that a person does. */
 function notChosen(node: NodeView, ended: boolean): string {
-  if (ended && !node.done && !node.abandoned) return "Not done when the run ended.";
+  if (ended && !node.done && !node.abandoned) return t("Not done when the run ended.");
   if (node.kind !== "behavior") return goalText(node);
-  if (node.owner !== null) return `${node.owner} has taken it.`;
-  return node.done ? "Done, and no robot has started it." : "Not started yet.";
+  if (node.owner !== null) return t("{owner} has taken it.", { owner: node.owner });
+  return node.done ? t("Done, and no robot has started it.") : t("Not started yet.");
 }
 
 function goalText(node: NodeView): string {
-  if (node.done) return "Done.";
-  if (node.abandoned) return "Given up.";
-  return node.activation_level > 0 ? "What is under it may be started now." : "Nothing under it may be started now.";
+  if (node.done) return t("Done.");
+  if (node.abandoned) return t("Given up.");
+  return node.activation_level > 0
+    ? t("What is under it may be started now.")
+    : t("Nothing under it may be started now.");
 }
 
 function Choice({ choice }: { choice: NodeStarted }) {
@@ -61,34 +64,39 @@ function Choice({ choice }: { choice: NodeStarted }) {
   return (
     <>
       <p class="small">
-        {clock(choice.time)}, {choice.robot}, attempt {choice.attempt}: {whyChosen(choice)}
+        {t("{time}, {robot}, attempt {attempt}: {choice}", {
+          time: clock(choice.time),
+          robot: choice.robot,
+          attempt: choice.attempt,
+          choice: whyChosen(choice),
+        })}
       </p>
-      <div class="choice-table" role="region" aria-label="Candidates" tabIndex={0}>
+      <div class="choice-table" role="region" aria-label={t("Candidates")} tabIndex={0}>
         <table>
           <thead>
             <tr>
-              <th scope="col">Candidate</th>
-              <th scope="col">Level</th>
-              <th scope="col">Potential</th>
-              <th scope="col">Failed</th>
+              <th scope="col">{t("Candidate")}</th>
+              <th scope="col">{t("Level")}</th>
+              <th scope="col">{t("Potential")}</th>
+              <th scope="col">{t("Failed")}</th>
             </tr>
           </thead>
           <tbody>
             {shown.map((candidate) => (
               <tr key={candidate.node} class={candidate.node === choice.node ? "won" : undefined}>
                 <th scope="row">
-                  {candidate.node === choice.node && <span aria-label="taken: ">✓ </span>}
+                  {candidate.node === choice.node && <span aria-label={t("taken:")}>✓ </span>}
                   {plain(candidate.name)}
                 </th>
-                <td>{candidate.level.toFixed(2)}</td>
-                <td>{candidate.potential.toFixed(2)}</td>
+                <td>{decimal(candidate.level, 2)}</td>
+                <td>{decimal(candidate.potential, 2)}</td>
                 <td>{candidate.attempts}</td>
               </tr>
             ))}
           </tbody>
         </table>
       </div>
-      {more > 0 && <p class="quiet small">and {more} more</p>}
+      {more > 0 && <p class="quiet small">{t("and {more} more", { more })}</p>}
     </>
   );
 }

@@ -2,22 +2,30 @@
 import { plain } from "../tree/words";
 import { picturePath } from "../wire/rest";
 import { awaiting, type OpenDialogue } from "./fold";
+import { t } from "../words/words";
+import { quoted } from "../question/answering";
 import "./dialogue_now.css";
+import { learn } from "../words/said";
 
 export function DialogueNow({ dialogue }: { dialogue: OpenDialogue }) {
   const { opened, raised, prompt, answered, claimedBy } = dialogue;
+  if (prompt !== null) learn(prompt.wordings);
   return (
-    <article class="panel dialogue-now" aria-label={`Dialogue about ${plain(opened.object ?? opened.name)}`}>
-      {raised?.picture != null && <img src={picturePath(raised.picture)} alt="What the robot saw at the fault" />}
+    <article
+      class="panel dialogue-now"
+      aria-label={t("Dialogue about {part}", { part: plain(opened.object ?? opened.name) })}
+    >
+      {raised?.picture != null && <img src={picturePath(raised.picture)} alt={t("What the robot saw at the fault")} />}
       <div>
         <p class="small quiet">
           {opened.robot} · {plain(opened.issue)} · {plain(opened.object ?? opened.name)}
         </p>
-        {prompt !== null && <p class="dialogue-text">“{prompt.text}”</p>}
+        {prompt !== null && <p class="dialogue-text">{quoted(prompt.text)}</p>}
         <p class="small">
           {STATE[awaiting(dialogue) ?? "none"]}
-          {answered !== null && ` ${answered.helper} answered ${answered.answer}.`}
-          {claimedBy !== null && ` ${claimedBy} is on it.`}
+          {answered !== null &&
+            ` ${t("{helper} answered {answer}.", { helper: answered.helper, answer: answered.answer === "yes" ? t("yes") : t("no") })}`}
+          {claimedBy !== null && ` ${t("{by} is on it.", { by: claimedBy })}`}
         </p>
       </div>
     </article>
@@ -25,7 +33,7 @@ export function DialogueNow({ dialogue }: { dialogue: OpenDialogue }) {
 }
 
 const STATE = {
-  answer: "The robot waits for an answer.",
-  help: "The robot watches for the promised help.",
-  none: "The robot goes on.",
+  answer: t("The robot waits for an answer."),
+  help: t("The robot watches for the promised help."),
+  none: t("The robot goes on."),
 } as const;

@@ -19,6 +19,7 @@ import { activationOf, type LeafStatus } from "./activation";
 import { lastOf } from "./transcript_lines";
 import { beginSteering, foldSteering, type Steering } from "./steering/steering_fold";
 import { shapeOf, type TreeShape } from "./tree_shape";
+import { t } from "../words/words";
 
 export interface LeafState {
   readonly status: LeafStatus;
@@ -158,7 +159,7 @@ function applied(state: RunState, event: Told): RunState {
     case "run_failed":
       return end(state, "failed", { reason: event.reason, node: event.node, missing: [], unseen: [] });
     case "run_aborted":
-      return end(state, "aborted", { reason: event.reason || "aborted by a person", node: null, missing: [], unseen: [] });
+      return end(state, "aborted", { reason: event.reason || t("aborted by a person"), node: null, missing: [], unseen: [] });
     case "robot_lost":
       return { ...state, lost: new Set(state.lost).add(event.robot) };
     case "robot_back":

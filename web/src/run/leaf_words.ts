@@ -3,6 +3,7 @@ import { plain } from "../tree/words";
 import type { LeafSaid, NodeTaken, NodeView } from "../wire/types";
 import type { RunState } from "./fold";
 import { clock } from "./run_words";
+import { t } from "../words/words";
 
 /** Whether somebody may say of a leaf that they do it: its turn has come, and a robot could see it done. */
 export function canBeTaken(view: NodeView): boolean {
@@ -12,17 +13,25 @@ export function canBeTaken(view: NodeView): boolean {
 
 /** Who does a leaf, and when it is done: not when they say so. */
 export function beingDone({ name, helper, until, said_done }: NodeTaken, me: string): string {
+  const about = { name: plain(name), until: clock(until) };
   if (said_done) {
-    const says = helper === me ? "You say" : `${helper} says`;
-    return `${says} that ${plain(name)} is done by hand: it is once a robot sees it at its place, until ${clock(until)}.`;
+    return helper === me
+      ? t("You say that {name} is done by hand: it is once a robot sees it at its place, until {until}.", about)
+      : t("{helper} says that {name} is done by hand: it is once a robot sees it at its place, until {until}.", {
+          ...about,
+          helper,
+        });
   }
-  const who = helper === me ? "You are" : `${helper} is`;
-  return `${who} doing ${plain(name)}, until ${clock(until)}: it is done once a robot sees it at its place.`;
+  return helper === me
+    ? t("You are doing {name}, until {until}: it is done once a robot sees it at its place.", about)
+    : t("{helper} is doing {name}, until {until}: it is done once a robot sees it at its place.", { ...about, helper });
 }
 
 /** What came of what somebody said of a leaf. */
 export function whatWasSaid({ deed, name }: LeafSaid): string {
-  return deed === "take" ? `You have taken ${plain(name)}.` : `You have given ${plain(name)} back.`;
+  return deed === "take"
+    ? t("You have taken {name}.", { name: plain(name) })
+    : t("You have given {name} back.", { name: plain(name) });
 }
 
 /** Who of the people is doing something with which object. */

@@ -8,6 +8,7 @@ import * as rest from "../wire/rest";
 import type { NodeTaken, NodeView } from "../wire/types";
 import { beingDone, canBeTaken, whatWasSaid } from "./leaf_words";
 import { sentence } from "./run_words";
+import { t } from "../words/words";
 import "./leaves.css";
 
 interface LeavesProps {
@@ -42,24 +43,24 @@ export function Leaves({ run, people, selected, example, going }: LeavesProps) {
   const offered = going && may("helper");
   return (
     <section class="panel leaves" aria-labelledby="leaves-title">
-      <h2 id="leaves-title">What people do themselves</h2>
+      <h2 id="leaves-title">{t("What people do themselves")}</h2>
       {[...people.values()].map((taken) => (
         <div key={taken.node} class="leaf-taken">
           <p class="small">{beingDone(taken, me)}</p>
           {offered && taken.helper === me && (
             <button type="button" class="button" disabled={busy} onClick={() => void giveBack(taken)}>
-              Give it back
+              {t("Give it back")}
             </button>
           )}
         </div>
       ))}
       {offered && selected !== null && canBeTaken(selected) && (
         <button type="button" class="button" disabled={busy} onClick={() => void take(selected)}>
-          I do this: {plain(selected.name)}
+          {t("I do this: {name}", { name: plain(selected.name) })}
         </button>
       )}
       {offered && <Words busy={busy} example={example} say={(words) => ask(rest.sayOfLeaf(run, words, me).then(whatWasSaid))} />}
-      {going && !may("helper") && <p class="quiet small">{whyNot("Doing a part of it", "helper")}</p>}
+      {going && !may("helper") && <p class="quiet small">{whyNot(t("Doing a part of it"), "helper")}</p>}
       <p role="status" class={note.refused ? "mistake small" : "small"}>
         {note.text}
       </p>
@@ -83,7 +84,7 @@ function Words({ busy, example, say }: { busy: boolean; example: string; say(wor
       }}
     >
       <label class="small" for="leaf-words">
-        Choose a leaf that waits, or say it: “I do the {example}”, “I give the {example} back”
+        {t("Choose a leaf that waits, or say it: “I do the {example}”, “I give the {example} back”", { example })}
       </label>
       <div>
         <input
@@ -95,10 +96,10 @@ function Words({ busy, example, say }: { busy: boolean; example: string; say(wor
           onInput={(event) => setWords(event.currentTarget.value)}
         />
         <button class="button" disabled={busy || words.trim() === ""}>
-          Say it
+          {t("Say it")}
         </button>
         <SpeakButton
-          label="Speak"
+          label={t("Speak")}
           heard={(said) => {
             setWords(said);
             void tell(said);

@@ -4,6 +4,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { connection } from "../state/service";
 import * as rest from "../wire/rest";
 import type { Detection } from "../wire/types";
+import { t } from "../words/words";
 
 const EVERY_MS = 300;
 const AFTER_REFUSAL_MS = 2_000;
@@ -25,7 +26,7 @@ export interface Live {
   readonly reason: string;
 }
 
-const NOTHING_YET: Live = { picture: null, detection: null, reason: "Waiting for a picture …" };
+const NOTHING_YET: Live = { picture: null, detection: null, reason: t("Waiting for a picture …") };
 
 /** The pictures of a camera while the element that shows them can be seen. */
 export function useLivePicture({ run, camera, robot }: Camera) {
@@ -46,7 +47,7 @@ export function useLivePicture({ run, camera, robot }: Camera) {
       show(null, NOTHING_YET.reason);
     };
   }, [run, camera, robot, connected]);
-  return { frame, live: connected ? live : { ...NOTHING_YET, reason: "No picture: the connection is lost." } };
+  return { frame, live: connected ? live : { ...NOTHING_YET, reason: t("No picture: the connection is lost.") } };
 }
 
 /** Ask for one picture after the other until stopped; none is asked for before the last one has come. */
@@ -72,8 +73,8 @@ function follow({ run, camera, robot }: Camera, show: (picture: rest.CameraPictu
 }
 
 function sentenceOn(error: unknown): string {
-  if (error instanceof rest.Refusal && error.status === GONE) return "No picture: the robot is not there yet, or has no such camera.";
-  return "The robot sends no picture now.";
+  if (error instanceof rest.Refusal && error.status === GONE) return t("No picture: the robot is not there yet, or has no such camera.");
+  return t("The robot sends no picture now.");
 }
 
 /** Do something as long as an element can be seen; returns how to stop for good. */

@@ -3,6 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import { may } from "../state/access";
 import { helperName } from "../state/preferences";
 import * as rest from "../wire/rest";
+import { t } from "../words/words";
 
 const CHOICES_S = [10, 30, 60] as const;
 
@@ -14,7 +15,7 @@ export function RecordButton({ run }: { run: string }) {
     if (!recording) return;
     const timer = window.setTimeout(() => {
       setRecording(false);
-      setNote("The time is over. What the cameras gave is in the replay.");
+      setNote(t("The time is over. What the cameras gave is in the replay."));
     }, seconds * 1000);
     return () => window.clearTimeout(timer);
   }, [recording]);
@@ -31,10 +32,10 @@ export function RecordButton({ run }: { run: string }) {
   return (
     <div class="camera-recording">
       <button class="button" type="button" disabled={recording} onClick={() => void record()}>
-        {recording ? "Recording …" : "Record"}
+        {recording ? t("Recording …") : t("Record")}
       </button>
       <label class="small">
-        <span class="unseen">For how long</span>
+        <span class="unseen">{t("For how long")}</span>
         <select
           class="input"
           value={seconds}

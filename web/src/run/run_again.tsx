@@ -6,6 +6,7 @@ import { plain } from "../tree/words";
 import * as rest from "../wire/rest";
 import type { RunRequest } from "../wire/types";
 import type { RunState } from "./fold";
+import { t } from "../words/words";
 
 export function RunAgain({ started }: { started: RunState["started"] }) {
   const [asking, setAsking] = useState(false);
@@ -23,17 +24,17 @@ export function RunAgain({ started }: { started: RunState["started"] }) {
   return (
     <>
       <button class="button" type="button" onClick={() => setAsking(true)}>
-        Run again …
+        {t("Run again …")}
       </button>
       {asking && (
         <Confirm
-          title={`Run ${plain(started.tree_name)} again?`}
-          confirm="Start the run"
+          title={t("Run {tree_name} again?", { tree_name: plain(started.tree_name) })}
+          confirm={t("Start the run")}
           harmless
           onCancel={() => setAsking(false)}
           onConfirm={() => void start()}
         >
-          <p>With the task tree as it is now, and all else as it was asked for then:</p>
+          <p>{t("With the task tree as it is now, and all else as it was asked for then:")}</p>
           <dl class="run-options">
             {told(started.options).map(([name, value]) => (
               <div key={name}>
@@ -43,7 +44,7 @@ export function RunAgain({ started }: { started: RunState["started"] }) {
             ))}
           </dl>
           <div class="field">
-            <label for="again-seed">Seed</label>
+            <label for="again-seed">{t("Seed")}</label>
             <input id="again-seed" type="number" min="0" step="1" value={seed} onInput={(event) => setSeed(event.currentTarget.value)} />
           </div>
           <p class="mistake" role="alert">

@@ -9,15 +9,16 @@ import { ended, type RunState } from "./fold";
 import type { Moment } from "./moment";
 import { RunAgain } from "./run_again";
 import { clock, sentence, siteName } from "./run_words";
+import { t } from "../words/words";
 import "./run_header.css";
 
 const STATUS_WORDS = {
-  running: "running",
-  paused: "paused",
-  finished: "finished",
-  failed: "failed",
-  aborted: "aborted",
-  unreadable: "unreadable",
+  running: t("running"),
+  paused: t("paused"),
+  finished: t("finished"),
+  failed: t("failed"),
+  aborted: t("aborted"),
+  unreadable: t("unreadable"),
 } as const;
 
 export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment }) {
@@ -26,7 +27,7 @@ export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment
     <header class="run-header">
       <div class="run-title">
         <h1>
-          {plain(started.tree_name)} <span class="quiet">in {plain(started.world)}</span>
+          {plain(started.tree_name)} <span class="quiet">{t("in {world}", { world: plain(started.world) })}</span>
         </h1>
         <p class="run-facts">
           <span class={`badge ${status}`}>{STATUS_WORDS[status]}</span>
@@ -34,8 +35,8 @@ export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment
           <span class="quiet">
             {started.robots.map((robot) => (newest.lost.has(robot) ? `${robot} (lost)` : robot)).join(", ")}
           </span>
-          {started.site != null && <span class="quiet">at the site {siteName({ id: started.site, scene: sceneOf(started) })}</span>}
-          {started.scenario !== null && <span class="quiet">scenario {plain(started.scenario)}</span>}
+          {started.site != null && <span class="quiet">{t("at the site {site_name}", { site_name: siteName({ id: started.site, scene: sceneOf(started) }) })}</span>}
+          {started.scenario !== null && <span class="quiet">{t("scenario {scenario}", { scenario: plain(started.scenario) })}</span>}
         </p>
         {result !== null && (status !== "finished" || result.missing.length > 0) && (
           <p class="mistake">{sentence(result.reason)}</p>
@@ -45,16 +46,10 @@ export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment
         )}
       </div>
       <div class="run-ways">
-        <a class="button" href={`/api/runs/${started.run}/report`} download>
-          Report
-        </a>
-        <span class="run-exports" role="group" aria-label="Export">
-          <a class="button" href={rest.exportPath(started.run, "csv")} title="Its events as a table" download>
-            CSV
-          </a>
-          <a class="button" href={rest.exportPath(started.run, "mcap")} title="Events, poses and pictures for Foxglove" download>
-            MCAP
-          </a>
+        <a class="button" href={`/api/runs/${started.run}/report`} download>{t("Report")}</a>
+        <span class="run-exports" role="group" aria-label={t("Export")}>
+          <a class="button" href={rest.exportPath(started.run, "csv")} title={t("Its events as a table")} download>{t("CSV")}</a>
+          <a class="button" href={rest.exportPath(started.run, "mcap")} title={t("Events, poses and pictures for Foxglove")} download>{t("MCAP")}</a>
         </span>
         {ended(status) && may("operator") && <RunAgain started={started} />}
         {!ended(status) && <RunControls run={started.run} paused={status === "paused"} />}
@@ -67,7 +62,7 @@ export function RunHeader({ newest, moment }: { newest: RunState; moment: Moment
 function RunClock({ moment }: { moment: Moment }) {
   return (
     <span class="run-clock">
-      <span class="unseen">Run clock </span>
+      <span class="unseen">{t("Run clock")}{" "}</span>
       {clock(moment.end.value)}
     </span>
   );
@@ -87,36 +82,30 @@ function RunControls({ run, paused }: { run: string; paused: boolean }) {
     }
     setBusy(false);
   };
-  if (!may("operator")) return <p class="quiet small">{whyNot("Pausing or aborting it", "operator")}</p>;
+  if (!may("operator")) return <p class="quiet small">{whyNot(t("Pausing or aborting it"), "operator")}</p>;
   return (
     <div class="run-controls">
       <p role="status" class="mistake small">
         {note}
       </p>
       {paused ? (
-        <button class="button primary" type="button" disabled={busy} onClick={() => void ask(rest.resumeRun)}>
-          Resume
-        </button>
+        <button class="button primary" type="button" disabled={busy} onClick={() => void ask(rest.resumeRun)}>{t("Resume")}</button>
       ) : (
-        <button class="button" type="button" disabled={busy} onClick={() => void ask(rest.pauseRun)}>
-          Pause
-        </button>
+        <button class="button" type="button" disabled={busy} onClick={() => void ask(rest.pauseRun)}>{t("Pause")}</button>
       )}
-      <button class="button danger" type="button" disabled={busy} onClick={() => setAborting(true)}>
-        Abort …
-      </button>
+      <button class="button danger" type="button" disabled={busy} onClick={() => setAborting(true)}>{t("Abort …")}</button>
       {aborting && (
         <Confirm
-          title="Abort this run for good?"
-          confirm="Abort the run"
-          cancel="Let it go on"
+          title={t("Abort this run for good?")}
+          confirm={t("Abort the run")}
+          cancel={t("Let it go on")}
           onCancel={() => setAborting(false)}
           onConfirm={() => {
             setAborting(false);
             void ask(rest.abortRun);
           }}
         >
-          <p>The robot stops, and the run cannot be taken up again.</p>
+          <p>{t("The robot stops, and the run cannot be taken up again.")}</p>
         </Confirm>
       )}
     </div>

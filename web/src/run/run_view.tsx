@@ -31,6 +31,7 @@ import { lanesOf, type TimelineItem } from "./timeline/lanes";
 import { Timeline } from "./timeline/timeline";
 import { Transcript } from "./transcript";
 import { usePlaying } from "./use_playing";
+import { t } from "../words/words";
 import "./run.css";
 
 const ScenePanel = later(() => import("./scene/scene_panel").then((module) => module.ScenePanel));
@@ -50,7 +51,7 @@ const LANE_STEP_S = 0.5;
 
 export function RunView({ run }: { run: string }) {
   const feed = useFeed(run);
-  if (feed === null) return <p class="page quiet">Loading …</p>;
+  if (feed === null) return <p class="page quiet">{t("Loading …")}</p>;
   return <Followed run={run} feed={feed} />;
 }
 
@@ -83,17 +84,17 @@ function Followed({ run, feed }: { run: string; feed: RunFeed }) {
     if (seenToFail) noteKnown(run);
   }, [run, seenToFail]);
   if (feed.failure.value !== null) return <NotThere reason={feed.failure.value} />;
-  if (state === null || latest === null) return <p class="page quiet">Loading …</p>;
+  if (state === null || latest === null) return <p class="page quiet">{t("Loading …")}</p>;
   return <Shown feed={feed} version={version} state={state} latest={latest} />;
 }
 
 function NotThere({ reason }: { reason: string }) {
   return (
     <section class="page">
-      <h1>This run cannot be shown</h1>
+      <h1>{t("This run cannot be shown")}</h1>
       <p>{reason}</p>
       <p>
-        <a href="/runs">To the runs</a>
+        <a href="/runs">{t("To the runs")}</a>
       </p>
     </section>
   );
@@ -176,7 +177,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
           run={state.started.run}
           people={state.people}
           selected={chosen}
-          example={plain(views.find(({ object }) => object !== null)?.object ?? "part")}
+          example={plain(views.find(({ object }) => object !== null)?.object ?? t("part"))}
           going={newest && state.status === "running"}
         />
       )}
@@ -210,7 +211,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
   );
   const transcript = (
     <section class="panel run-transcript">
-      <h2>Transcript</h2>
+      <h2>{t("Transcript")}</h2>
       <Transcript events={history.events} version={version} until={newest ? null : state.seq} onChoose={goToEvent} />
     </section>
   );
@@ -222,10 +223,10 @@ function Shown({ feed, version, state, latest }: ShownProps) {
           {talk}
           <Tabs
             panels={[
-              { id: "tree", name: "Tree", content: [tree, choice] },
-              { id: "world", name: plan === null ? "Scene" : "Building", content: [world, cameras] },
-              { id: "timeline", name: "Timeline", content: timeline },
-              { id: "transcript", name: "Transcript", content: transcript },
+              { id: "tree", name: t("Tree"), content: [tree, choice] },
+              { id: "world", name: plan === null ? t("Scene") : t("Building"), content: [world, cameras] },
+              { id: "timeline", name: t("Timeline"), content: timeline },
+              { id: "transcript", name: t("Transcript"), content: transcript },
             ]}
           />
         </>
@@ -263,7 +264,7 @@ function Talk({ state, newest, children }: { state: RunState; newest: boolean; c
     <div class="run-talk">
       {children}
       {newest && <RunQuestion run={run} />}
-      {!newest && asked && <p class="run-waiting">A question is open now: go back to live to answer it.</p>}
+      {!newest && asked && <p class="run-waiting">{t("A question is open now: go back to live to answer it.")}</p>}
       {told.map((dialogue) => (
         <DialogueNow key={dialogue.opened.dialogue} dialogue={dialogue} />
       ))}
@@ -298,15 +299,15 @@ function TreePanel({ name, views, people, talkedAbout, result, steered, selected
   const focus = asksOrFailed ?? active;
   return (
     <section class="panel run-tree">
-      <h2>Task tree</h2>
+      <h2>{t("Task tree|of this run")}</h2>
       <TreeDrawing
         nodes={nodes}
-        label={`Task tree of ${plain(name)}`}
+        label={t("Task tree of {name}", { name: plain(name) })}
         selected={selected}
         focus={focus?.path ?? null}
         onSelect={(path) => onSelect(path === selected ? null : path)}
       />
-      <p class="tree-legend small quiet">↓ level · ↑ potential</p>
+      <p class="tree-legend small quiet">{t("↓ level · ↑ potential")}</p>
     </section>
   );
 }
@@ -348,9 +349,7 @@ function TimelinePanel({ run, feed, version, onSelect, onGoTo }: TimelinePanelPr
         moment={moment}
         onChoose={choose}
         more={
-          <button type="button" class="small-button" aria-expanded={plotted} onClick={() => setPlotted(!plotted)}>
-            Plots
-          </button>
+          <button type="button" class="small-button" aria-expanded={plotted} onClick={() => setPlotted(!plotted)}>{t("Plots")}</button>
         }
       />
       {plotted && <Plots run={run} history={history} version={version} end={end} moment={moment} />}

@@ -1,14 +1,17 @@
 // How the console says what state a run is in, and when something was.
 import { plain } from "../tree/words";
 import type { RunStatus, RunSummary } from "../wire/types";
+import { decimal, t } from "../words/words";
+import { locale } from "../words/language";
+import { said } from "../words/said";
 
 export const STATUS_WORDS: Readonly<Record<RunStatus, string>> = {
-  running: "Running",
-  paused: "Paused",
-  finished: "Finished",
-  failed: "Failed",
-  aborted: "Aborted",
-  unreadable: "Unreadable",
+  running: t("Running"),
+  paused: t("Paused"),
+  finished: t("Finished"),
+  failed: t("Failed"),
+  aborted: t("Aborted"),
+  unreadable: t("Unreadable"),
 };
 
 /** Beside the word and the colour, a sign for those who do not tell colours. */
@@ -24,7 +27,8 @@ export const STATUS_SIGNS: Readonly<Record<RunStatus, string>> = {
 /** What came of a run, in a sentence; empty while it goes on. */
 export function outcome({ result }: RunSummary): string {
   if (result === null) return "";
-  return result.reason.charAt(0).toUpperCase() + result.reason.slice(1);
+  const reason = said(result.reason);
+  return reason.charAt(0).toUpperCase() + reason.slice(1);
 }
 
 /** A site as people call it: by its scene, and the beginning of its id. */
@@ -38,8 +42,8 @@ const UNITS: readonly (readonly [Intl.RelativeTimeFormatUnit, number])[] = [
   ["minute", 60],
 ];
 
-const RELATIVE = new Intl.RelativeTimeFormat("en", { numeric: "auto" });
-const MOMENT = new Intl.DateTimeFormat("en-GB", { dateStyle: "medium", timeStyle: "short" });
+const RELATIVE = new Intl.RelativeTimeFormat(locale, { numeric: "auto" });
+const MOMENT = new Intl.DateTimeFormat(locale, { dateStyle: "medium", timeStyle: "short" });
 
 /** "5 minutes ago"; both times in ms since 1970. */
 export function ago(then: number, now: number): string {
@@ -47,7 +51,7 @@ export function ago(then: number, now: number): string {
   for (const [unit, length] of UNITS) {
     if (seconds >= length) return RELATIVE.format(-Math.floor(seconds / length), unit);
   }
-  return "just now";
+  return t("just now");
 }
 
 /** "21 Nov 2026, 14:03" */
@@ -58,8 +62,8 @@ export function moment(then: number): string {
 /** A time of a clock as people read it: 7.4 s, 2:07.4, 1:02:07.4. */
 export function clock(time: number): string {
   const tenths = Math.round(time * 10);
-  if (tenths < 600) return `${(tenths / 10).toFixed(1)} s`;
-  const seconds = ((tenths % 600) / 10).toFixed(1).padStart(4, "0");
+  if (tenths < 600) return `${decimal(tenths / 10, 1)} s`;
+  const seconds = decimal((tenths % 600) / 10, 1).padStart(4, "0");
   const [hours, minutes] = [Math.floor(tenths / 36_000), Math.floor(tenths / 600) % 60];
   return hours === 0 ? `${minutes}:${seconds}` : `${hours}:${String(minutes).padStart(2, "0")}:${seconds}`;
 }

@@ -9,6 +9,7 @@ import { ago, moment, outcome, STATUS_SIGNS, STATUS_WORDS } from "./run_words";
 import { ANYTHING, isAnything, queryOf } from "./search";
 import { SearchFields } from "./search_fields";
 import { useSettled } from "./use_settled";
+import { t } from "../words/words";
 import "./runs.css";
 
 interface Filter {
@@ -16,14 +17,14 @@ interface Filter {
   statuses: readonly RunStatus[];
 }
 
-const ALL: Filter = { name: "All", statuses: [] };
+const ALL: Filter = { name: t("All"), statuses: [] };
 const FILTERS: readonly Filter[] = [
   ALL,
-  { name: "Going on", statuses: ["running", "paused"] },
-  { name: "Finished", statuses: ["finished"] },
-  { name: "Failed", statuses: ["failed"] },
-  { name: "Aborted", statuses: ["aborted"] },
-  { name: "Unreadable", statuses: ["unreadable"] },
+  { name: t("Going on"), statuses: ["running", "paused"] },
+  { name: t("Finished"), statuses: ["finished"] },
+  { name: t("Failed"), statuses: ["failed"] },
+  { name: t("Aborted"), statuses: ["aborted"] },
+  { name: t("Unreadable"), statuses: ["unreadable"] },
 ];
 
 /** Chosen once, kept while one looks at a run and comes back. */
@@ -40,16 +41,16 @@ export function RunsView() {
   return (
     <section class="page">
       <div class="page-head">
-        <h1>Runs</h1>
+        <h1>{t("Runs")}</h1>
         {may("operator") && (
           <a class="button primary" href="/start">
-            Start a run
+            {t("Start a run")}
           </a>
         )}
       </div>
       <SearchFields
         search={search.value}
-        hint="Task tree, robot, world, scenario"
+        hint={t("Task tree, robot, world, scenario")}
         onSearch={(wanted) => {
           search.value = wanted;
           page.value = 0;
@@ -59,10 +60,10 @@ export function RunsView() {
       <p class="mistake" role="alert">
         {failure}
       </p>
-      {runs === null && failure === "" && <p class="quiet">Loading …</p>}
+      {runs === null && failure === "" && <p class="quiet">{t("Loading …")}</p>}
       {none && (isAll ? <NoRunsYet /> : <NoneLikeThis />)}
       {runs !== null && !none && (
-        <ol class="runs" aria-label="Runs, newest first">
+        <ol class="runs" aria-label={t("Runs, newest first")}>
           {runs.map((run) => (
             <Row key={run.id} run={run} now={now} />
           ))}
@@ -75,7 +76,7 @@ export function RunsView() {
 
 function Filters() {
   return (
-    <div class="filters" role="group" aria-label="Show runs by state">
+    <div class="filters" role="group" aria-label={t("Show runs by state")}>
       {FILTERS.map((each) => (
         <button
           key={each.name}
@@ -113,7 +114,9 @@ function Row({ run, now }: { run: RunSummary; now: number }) {
             {run.scenario !== null && ` · ${run.scenario}`}
           </span>
         </span>
-        <span class="run-outcome">{asks ? <strong class="run-asks">Asks a question</strong> : outcome(run)}</span>
+        <span class="run-outcome">
+          {asks ? <strong class="run-asks">{t("Asks a question")}</strong> : outcome(run)}
+        </span>
         <span class="run-started">
           <span>{ago(started, now)}</span>
           <time class="small quiet" datetime={run.started}>
@@ -128,28 +131,28 @@ function Row({ run, now }: { run: RunSummary; now: number }) {
 function NoRunsYet() {
   return (
     <div class="panel empty">
-      <h2>No runs yet</h2>
-      <p class="quiet">A run is one execution of a task tree by a robot, in a simulated world or a real one.</p>
+      <h2>{t("No runs yet")}</h2>
+      <p class="quiet">{t("A run is one execution of a task tree by a robot, in a simulated world or a real one.")}</p>
       <a class="button" href="/start">
-        Start the first one
+        {t("Start the first one")}
       </a>
     </div>
   );
 }
 
 function NoneLikeThis() {
-  return <p class="panel empty quiet">No runs to show here.</p>;
+  return <p class="panel empty quiet">{t("No runs to show here.")}</p>;
 }
 
 function Paging({ more }: { more: boolean }) {
   return (
-    <nav class="paging" aria-label="Pages of runs">
+    <nav class="paging" aria-label={t("Pages of runs")}>
       <button class="button" type="button" disabled={page.value === 0} onClick={() => page.value--}>
-        Newer
+        {t("Newer")}
       </button>
-      <span class="quiet">Page {page.value + 1}</span>
+      <span class="quiet">{t("Page {page}", { page: page.value + 1 })}</span>
       <button class="button" type="button" disabled={!more} onClick={() => page.value++}>
-        Older
+        {t("Older")}
       </button>
     </nav>
   );

@@ -4,6 +4,7 @@ import { connection } from "../state/service";
 import { withMoment } from "./moment_in_address";
 import { clock } from "./run_words";
 import { type Moment, SPEEDS } from "./moment";
+import { decimal, parts, t } from "../words/words";
 import "./scrubber.css";
 
 const STEP_S = 0.1;
@@ -25,7 +26,7 @@ interface FaultSteps {
   after: (() => void) | null;
 }
 
-export function Scrubber({ of = "the run", moment, going, onStep, faults }: ScrubberProps) {
+export function Scrubber({ of = t("the run"), moment, going, onStep, faults }: ScrubberProps) {
   const time = moment.time.value;
   const end = moment.end.value;
   const newest = moment.newest.value;
@@ -33,29 +34,29 @@ export function Scrubber({ of = "the run", moment, going, onStep, faults }: Scru
   // Whole steps up to the end, so that the slider's last step is not before it.
   const last = Math.max(Math.ceil(end / STEP_S), 1) * STEP_S;
   return (
-    <section class={`scrubber ${newest ? "newest" : "past"}`} aria-label="Moment">
+    <section class={`scrubber ${newest ? "newest" : "past"}`} aria-label={t("Moment")}>
       <div class="scrubber-buttons">
-        {faults && <FaultButton name="Previous fault" keys="Shift+ArrowLeft" d={FAULT_BEFORE} go={faults.before} />}
-        <button type="button" class="bare icon-button" aria-label="One event back" onClick={() => onStep(-1)}>
+        {faults && <FaultButton name={t("Previous fault")} keys="Shift+ArrowLeft" d={FAULT_BEFORE} go={faults.before} />}
+        <button type="button" class="bare icon-button" aria-label={t("One event back")} onClick={() => onStep(-1)}>
           <Icon d="M14 4l-8 6 8 6zM4 4v12" />
         </button>
         <button
           type="button"
           class="bare icon-button"
-          aria-label={playing ? "Stop playing" : "Play"}
+          aria-label={playing ? t("Stop playing") : t("Play")}
           onClick={() => (playing ? moment.pause() : moment.play())}
         >
           <Icon d={playing ? "M6 4v12M14 4v12" : "M6 3l11 7-11 7z"} />
         </button>
-        <button type="button" class="bare icon-button" aria-label="One event on" disabled={newest} onClick={() => onStep(1)}>
+        <button type="button" class="bare icon-button" aria-label={t("One event on")} disabled={newest} onClick={() => onStep(1)}>
           <Icon d="M6 4l8 6-8 6zM16 4v12" />
         </button>
-        {faults && <FaultButton name="Next fault" keys="Shift+ArrowRight" d={FAULT_AFTER} go={faults.after} />}
+        {faults && <FaultButton name={t("Next fault")} keys="Shift+ArrowRight" d={FAULT_AFTER} go={faults.after} />}
       </div>
       <input
         type="range"
-        aria-label={`Moment of ${of}`}
-        aria-valuetext={`${time.toFixed(1)} of ${end.toFixed(1)} seconds`}
+        aria-label={t("Moment of {of}", { of })}
+        aria-valuetext={t("{time} of {end} seconds", { time: decimal(time, 1), end: decimal(end, 1) })}
         min={0}
         max={last}
         step={STEP_S}
@@ -63,7 +64,7 @@ export function Scrubber({ of = "the run", moment, going, onStep, faults }: Scru
         onInput={(event) => moment.goTo(Number(event.currentTarget.value))}
       />
       <label class="scrubber-speed">
-        <span class="unseen">Speed</span>
+        <span class="unseen">{t("Speed")}</span>
         <select
           class="input"
           value={String(moment.speed.value)}
@@ -83,14 +84,14 @@ export function Scrubber({ of = "the run", moment, going, onStep, faults }: Scru
           </>
         ) : (
           <>
-            You are looking at <b>{clock(time)}</b> of {clock(end)}
+            {parts("You are looking at {time} of {end}", { time: <b>{clock(time)}</b>, end: clock(end) })}
           </>
         )}
       </p>
       {!newest && <CopyLink time={time} />}
       {!newest && (
         <button type="button" class="button primary scrubber-back" onClick={moment.goToNewest}>
-          {going ? "Back to live" : "To the end"}
+          {going ? t("Back to live") : t("To the end")}
         </button>
       )}
     </section>
@@ -126,8 +127,8 @@ function Icon({ d }: { d: string }) {
 
 /** Nothing is live that no longer comes. */
 function Where({ going }: { going: boolean }) {
-  if (!going) return <b>The end</b>;
-  return connection.value === "connected" ? <b class="live">Live</b> : <b>Not connected, last seen</b>;
+  if (!going) return <b>{t("The end")}</b>;
+  return connection.value === "connected" ? <b class="live">{t("Live")}</b> : <b>{t("Not connected, last seen")}</b>;
 }
 
 const LINK = "M8 12l4-4M9 6l2-2a3.5 3.5 0 0 1 5 5l-2 2M11 14l-2 2a3.5 3.5 0 0 1-5-5l2-2";
@@ -139,7 +140,7 @@ function CopyLink({ time }: { time: number }) {
       () => setCopied(time),
       () => setCopied(null),
     );
-  const words = copied === time ? "Link copied" : "Copy link";
+  const words = copied === time ? t("Link copied") : t("Copy link");
   // Pages that came over plain http from elsewhere have no clipboard; the address says the same.
   if (navigator.clipboard === undefined) return null;
   return (

@@ -1,6 +1,7 @@
 // Panels one at a time where there is no room for all of them.
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
+import { t } from "../words/words";
 import "./tabs.css";
 
 const NARROW = "(width < 720px)";
@@ -25,7 +26,7 @@ export function Tabs({ panels }: { panels: readonly Panel[] }) {
   };
   return (
     <>
-      <div class="tabs" role="tablist" aria-label="Parts of the run" ref={bar} onKeyDown={onKeyDown}>
+      <div class="tabs" role="tablist" aria-label={t("Parts of the run")} ref={bar} onKeyDown={onKeyDown}>
         {panels.map(({ id, name }) => (
           <button
             key={id}

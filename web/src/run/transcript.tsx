@@ -4,6 +4,8 @@ import type { Told } from "../wire/told";
 import type { Tone } from "../wire/types";
 import { clock } from "./run_words";
 import { joined, type Line, linesOf } from "./transcript_lines";
+import { t } from "../words/words";
+import { Told as ToldText } from "../words/told";
 import "./transcript.css";
 
 /** So many lines are drawn together, and skipped together while nothing of them is in sight. */
@@ -28,7 +30,7 @@ export function Transcript({ events, version, until, onChoose }: TranscriptProps
   const current = until ?? last;
   useFollowing(list, current, until === null);
   return (
-    <div class="transcript" ref={list} role="log" aria-label="Transcript" tabIndex={0}>
+    <div class="transcript" ref={list} role="log" aria-label={t("Transcript")} tabIndex={0}>
       {portions.map((lines, index) => {
         const first = lines[0]?.seq ?? 0;
         const end = portions[index + 1]?.[0]?.seq ?? Infinity;
@@ -83,18 +85,36 @@ function Portion({ lines, until, marked, onChoose }: PortionProps) {
             class={`line ${line.tone} ${line.seq > until ? "later" : ""}`}
             aria-current={line === current ? "time" : undefined}
           >
-            <button type="button" class="bare" onClick={() => onChoose(line)} aria-label={`Go to ${clock(line.time)}`}>
+            <button
+              type="button"
+              class="bare"
+              onClick={() => onChoose(line)}
+              aria-label={t("Go to {time}", { time: clock(line.time) })}
+            >
               {clock(line.time)}
             </button>
             <p>
               {line.speaker !== "" && <b>{line.speaker} </b>}
-              {QUOTED.includes(line.tone) ? `“${line.text}”` : line.text}
+              <Text of={line} />
             </p>
           </li>
         ))}
       </ol>
     );
   }, [lines, until, marked, onChoose]);
+}
+
+/** A line may be joined of several texts. */
+function Text({ of: { text, tone } }: { of: Line }) {
+  if (!QUOTED.includes(tone)) return <ToldText text={text} />;
+  const [before, after] = t("“{text}”", { text: "\n" }).split("\n");
+  return (
+    <>
+      {before}
+      <ToldText text={text} />
+      {after}
+    </>
+  );
 }
 
 const NEAR_THE_END_PX = 80;

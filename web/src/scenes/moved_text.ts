@@ -4,19 +4,21 @@ import { pairRemoved, pairSet } from "../yaml_text/pairs";
 import { CannotEdit, lostComments, readYaml } from "../yaml_text/source";
 import { spliced } from "../yaml_text/splice";
 import type { Pose, Thing } from "./scene_source";
+import { t } from "../words/words";
 
 /** A tenth of a millimetre; angles a bit finer. */
 const DIGITS = { x: 4, y: 4, z: 4, yaw: 4 } as const;
 
 /** Say another pose, as far as `change` says one; without z it is on the table. Raises `CannotEdit`. */
 export function moved(text: string, thing: Pick<Thing, "name" | "where">, change: Partial<Pose>): string {
-  if (thing.where === null) throw new CannotEdit(`The file says nothing of ${thing.name}: add it to 'robots' in the text first.`);
+  if (thing.where === null)
+    throw new CannotEdit(t("The file says nothing of {name}: add it to 'robots' in the text first.", { name: thing.name }));
   let after = text;
   for (const key of ["x", "y", "z", "yaw"] as const) {
     const value = change[key];
     if (value !== undefined) after = said(after, thing.where, key, value);
   }
-  if (lostComments(text, after).length > 0) throw new CannotEdit("A comment stands in the way: change this in the text.");
+  if (lostComments(text, after).length > 0) throw new CannotEdit(t("A comment stands in the way: change this in the text."));
   return after;
 }
 
@@ -24,7 +26,7 @@ function said(text: string, where: readonly (string | number)[], key: keyof Pose
   const source = readYaml(text);
   const map = source?.doc.getIn(where, true);
   if (source === null || !isMap(map)) {
-    throw new CannotEdit("The pose stands in the text as an alias of another one: change it in the text.");
+    throw new CannotEdit(t("The pose stands in the text as an alias of another one: change it in the text."));
   }
   if (value === null) return spliced(text, pairRemoved(source, map, key));
   const rounded = Number(value.toFixed(DIGITS[key]));

@@ -3,6 +3,7 @@ import { DocumentEditor } from "../document/document_editor";
 import type { DocumentKind } from "../document/document_kind";
 import * as rest from "../wire/rest";
 import { SceneSide } from "./scene_side";
+import { t } from "../words/words";
 
 const NEW_SCENE = `name: my_scene
 objects:
@@ -15,10 +16,10 @@ places:
 `;
 
 const SCENE: DocumentKind = {
-  said: "scene",
+  said: t("scene"),
   newName: "my_scene",
   newText: NEW_SCENE,
-  textLabel: "The file of the scene",
+  textLabel: t("The file of the scene"),
   draftOf: (name) => `scene:${name ?? ""}`,
   addressOf: () => "/scenes",
   list: rest.scenes,

@@ -10,6 +10,7 @@ import { keyOf, thingProblems } from "./thing_problems";
 import { TopView } from "./top_view";
 import { useSceneHands } from "./use_scene_hands";
 import "../trees/editing/editing.css";
+import { t } from "../words/words";
 import "./scenes.css";
 
 export function SceneSide({ editing }: { editing: Editing }) {
@@ -17,11 +18,11 @@ export function SceneSide({ editing }: { editing: Editing }) {
   const last = useRef<SceneSource | null>(null);
   if (source !== null) last.current = source;
   const shown = source ?? last.current;
-  if (shown === null) return <p class="quiet">The drawing comes as soon as the text has no mistakes.</p>;
-  if (shown.elsewhere) return <p class="quiet">This scene is of a building or another world of its own: it is changed as text only.</p>;
+  if (shown === null) return <p class="quiet">{t("The drawing comes as soon as the text has no mistakes.")}</p>;
+  if (shown.elsewhere) return <p class="quiet">{t("This scene is of a building or another world of its own: it is changed as text only.")}</p>;
   return (
     <>
-      {source === null && <p class="small quiet">As it was before the mistakes:</p>}
+      {source === null && <p class="small quiet">{t("As it was before the mistakes:")}</p>}
       <SceneEditing editing={editing} source={shown} current={source !== null && text === editing.text.text} />
     </>
   );
@@ -68,9 +69,7 @@ function SceneEditing({ editing, source, current }: SceneEditingProps) {
           onKey={onKey}
         />
       </div>
-      <p id="scene-keys" class="small quiet">
-        Drag, or move with the arrow keys by 10 mm and turn with Q and E by 5°; with Shift by 1 mm and 1°. Page Up and Page Down go from one to the next.
-      </p>
+      <p id="scene-keys" class="small quiet">{t("Drag, or move with the arrow keys by 10 mm and turn with Q and E by 5°; with Shift by 1 mm and 1°. Page Up and Page Down go from one to the next.")}</p>
       <p class="edit-said small" role="status">
         {hands.said}
       </p>

@@ -2,6 +2,7 @@
 import type { EditedText } from "../document/use_text";
 import { plain } from "../tree/words";
 import type { WorldFit } from "../wire/types";
+import { t } from "../words/words";
 
 interface SceneToolsProps {
   text: EditedText;
@@ -13,18 +14,18 @@ interface SceneToolsProps {
 
 export function SceneTools({ text, worlds, shown, onWorld }: SceneToolsProps) {
   return (
-    <div class="tree-tools" role="group" aria-label="Change the scene">
+    <div class="tree-tools" role="group" aria-label={t("Change the scene")}>
       <div class="tool-group">
         <button type="button" class="tool" disabled={!text.canUndo} onClick={text.undo}>
-          Undo
+          {t("Undo")}
         </button>
         <button type="button" class="tool" disabled={!text.canRedo} onClick={text.redo}>
-          Redo
+          {t("Redo")}
         </button>
       </div>
       {shown !== undefined && (
         <label class="tool-group small">
-          Reach of the robots in
+          {t("Reach of the robots in")}
           <select class="tool" value={shown.world} onChange={(event) => onWorld(event.currentTarget.value)}>
             {worlds.map(({ world }) => (
               <option key={world} value={world}>

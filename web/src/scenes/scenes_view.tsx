@@ -4,6 +4,7 @@ import { may } from "../state/access";
 import { connection } from "../state/service";
 import * as rest from "../wire/rest";
 import type { SceneSummary } from "../wire/types";
+import { t, tn } from "../words/words";
 import "./scenes.css";
 
 export function ScenesView() {
@@ -16,22 +17,18 @@ export function ScenesView() {
   return (
     <section class="page">
       <div class="page-head">
-        <h1>Scenes</h1>
+        <h1>{t("Scenes")}</h1>
         <div class="page-actions">
-          <a class="button" href="/trees">
-            Task trees
-          </a>
+          <a class="button" href="/trees">{t("Task trees")}</a>
           {may("operator") && (
-            <a class="button" href="/edit_scene">
-              Write a new one
-            </a>
+            <a class="button" href="/edit_scene">{t("Write a new one")}</a>
           )}
         </div>
       </div>
       <p class="mistake" role="alert">
         {mistake}
       </p>
-      {scenes === null ? <p class="quiet">Loading …</p> : <ul class="scene-list">{scenes.map((scene) => <SceneRow key={scene.name} scene={scene} />)}</ul>}
+      {scenes === null ? <p class="quiet">{t("Loading …")}</p> : <ul class="scene-list">{scenes.map((scene) => <SceneRow key={scene.name} scene={scene} />)}</ul>}
     </section>
   );
 }
@@ -41,18 +38,14 @@ function SceneRow({ scene }: { scene: SceneSummary }) {
   return (
     <li class="panel scene-row">
       <div>
-        <strong class="library-name">{name}</strong> {built_in && <span class="badge">built in</span>}
-        <p class="small quiet">{objects === null ? "It has mistakes by now." : `${counted(objects, "object")}, ${counted(places ?? 0, "place")}`}</p>
+        <strong class="library-name">{name}</strong> {built_in && <span class="badge">{t("built in")}</span>}
+        <p class="small quiet">{objects === null ? t("It has mistakes by now.") : `${tn("{count} object", "{count} objects", { count: objects })}, ${tn("{count} place", "{count} places", { count: places ?? 0 })}`}</p>
       </div>
       {may("operator") && (
-        <a class="button" href={`/edit_scene/${name}`} aria-label={`${built_in ? "Copy and edit" : "Edit"} ${name}`}>
-          {built_in ? "Copy and edit" : "Edit"}
+        <a class="button" href={`/edit_scene/${name}`} aria-label={`${built_in ? t("Copy and edit") : t("Edit")} ${name}`}>
+          {built_in ? t("Copy and edit") : t("Edit")}
         </a>
       )}
     </li>
   );
-}
-
-function counted(count: number, what: string): string {
-  return count === 1 ? `1 ${what}` : `${count} ${what}s`;
 }

@@ -2,6 +2,7 @@
 import { plain } from "../tree/words";
 import type { Pose, Thing } from "./scene_source";
 import { keyOf, type ThingProblem } from "./thing_problems";
+import { t } from "../words/words";
 
 interface ThingFormProps {
   things: readonly Thing[];
@@ -15,19 +16,19 @@ interface ThingFormProps {
 }
 
 const GROUPS: readonly (readonly [Thing["kind"], string])[] = [
-  ["object", "Parts"],
-  ["place", "Places"],
-  ["robot", "Robots"],
+  ["object", t("Parts")],
+  ["place", t("Places")],
+  ["robot", t("Robots")],
 ];
 const DEGREES = 180 / Math.PI;
 
 export function ThingForm(props: ThingFormProps) {
   const { things, thing, problems, onSelect, onShow } = props;
   return (
-    <form class="node-form" aria-label="The selected thing" onSubmit={(event) => event.preventDefault()}>
+    <form class="node-form" aria-label={t("The selected thing")} onSubmit={(event) => event.preventDefault()}>
       <div class="node-form-head">
         <div class="field">
-          <label for="scene-thing">Selected</label>
+          <label for="scene-thing">{t("Selected")}</label>
           <select id="scene-thing" value={keyOf(thing)} onChange={(event) => onSelect(event.currentTarget.value)}>
             {GROUPS.map(([kind, said]) => (
               <optgroup key={kind} label={said}>
@@ -44,7 +45,7 @@ export function ThingForm(props: ThingFormProps) {
         </div>
         {thing.span !== null && (
           <button type="button" class="tool" onClick={onShow}>
-            Show in the text
+            {t("Show in the text")}
           </button>
         )}
       </div>
@@ -54,7 +55,7 @@ export function ThingForm(props: ThingFormProps) {
         </p>
       ))}
       {thing.where === null ? (
-        <p class="small quiet">The file names no robot, so one stands in the middle. To move it, add it to 'robots' in the text.</p>
+        <p class="small quiet">{t("The file names no robot, so one stands in the middle. To move it, add it to 'robots' in the text.")}</p>
       ) : (
         <Numbers {...props} />
       )}
@@ -71,29 +72,29 @@ function Numbers({ thing, tableHeight, onMove }: ThingFormProps) {
   const bottom = kind === "robot" ? 0 : tableHeight;
   return (
     <>
-      {together > 1 && <p class="small quiet">It is one of {together} in a grid, which move and turn together.</p>}
+      {together > 1 && <p class="small quiet">{t("It is one of {together} in a grid, which move and turn together.", { together })}</p>}
       <div class="node-fields">
         <div class="field">
-          <label for="thing-x">Forward x (m)</label>
+          <label for="thing-x">{t("Forward x (m)")}</label>
           <input id="thing-x" type="number" step="0.001" value={shown(pose.x)} onChange={(event) => enter(event, (x) => ({ x }))} />
         </div>
         <div class="field">
-          <label for="thing-y">Left y (m)</label>
+          <label for="thing-y">{t("Left y (m)")}</label>
           <input id="thing-y" type="number" step="0.001" value={shown(pose.y)} onChange={(event) => enter(event, (y) => ({ y }))} />
         </div>
         <div class="field">
-          <label for="thing-z">Bottom z (m)</label>
+          <label for="thing-z">{t("Bottom z (m)")}</label>
           <input
             id="thing-z"
             type="number"
             step="0.001"
             value={pose.z === null ? "" : shown(pose.z)}
-            placeholder={kind === "robot" ? "0 (the floor)" : `${shown(bottom)} (the table)`}
+            placeholder={kind === "robot" ? t("0 (the floor)") : t("{bottom} (the table)", { bottom: shown(bottom) })}
             onChange={(event) => (event.currentTarget.value === "" ? onMove({ z: null }) : enter(event, (z) => ({ z })))}
           />
         </div>
         <div class="field">
-          <label for="thing-yaw">Turned left (degrees)</label>
+          <label for="thing-yaw">{t("Turned left (degrees)")}</label>
           <input
             id="thing-yaw"
             type="number"

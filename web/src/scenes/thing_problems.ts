@@ -3,6 +3,7 @@ import type { Checked } from "../document/checked";
 import { lineEnd, offsetOfLine } from "../yaml_text/splice";
 import { sameValue } from "../yaml_text/values";
 import { readScene, type SceneSource, type Span, type Thing } from "./scene_source";
+import { t } from "../words/words";
 
 export interface ThingProblem {
   message: string;
@@ -36,7 +37,11 @@ function problemsOf({ errors, worlds }: NonNullable<Checked["check"]>): Told[] {
   const mistakes = errors.map(({ line, message }) => ({ line, message, mistake: true }));
   if (mistakes.length > 0) return mistakes;
   return worlds.flatMap(({ world, problems }) =>
-    problems.map(({ line, message }) => ({ line, message: `in the world '${world}': ${message}`, mistake: false })),
+    problems.map(({ line, message }) => ({
+      line,
+      message: t("in the world '{world}': {message}", { world, message }),
+      mistake: false,
+    })),
   );
 }
 

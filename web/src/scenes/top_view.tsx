@@ -5,6 +5,7 @@ import { plain, shortened } from "../tree/words";
 import { keyOf, type ThingProblem } from "./thing_problems";
 import type { Pose, SceneSource, Thing } from "./scene_source";
 import { placed, screenColor, viewFrame, type ViewFrame } from "./view_frame";
+import { t } from "../words/words";
 
 const LETTER_PX = 7;
 const LINE_PX = 16;
@@ -51,7 +52,7 @@ export function TopView({ source, selected, reach, problems, onSelect, onMove, o
   return (
     <div class="top-view" ref={box}>
       {width > 0 && (
-        <svg width={frame.width} height={frame.height} role="group" aria-label="The scene from above" aria-describedby="scene-keys">
+        <svg width={frame.width} height={frame.height} role="group" aria-label={t("The scene from above")} aria-describedby="scene-keys">
           <Ground frame={frame} table={table} reach={reach} />
           {things.map((thing) => (
             <ThingDrawing
@@ -170,11 +171,11 @@ function below(high: number): number {
   return high < LINE_PX ? high / 2 + LINE_PX - 4 : 4;
 }
 
-const KINDS: Readonly<Record<Thing["kind"], string>> = { object: "part", place: "place", robot: "robot" };
+const KINDS: Readonly<Record<Thing["kind"], string>> = { object: t("part"), place: t("place"), robot: t("robot") };
 
 function describedThing({ kind, name, pose }: Thing, problems: readonly ThingProblem[]): string {
-  const told = `${plain(name)}, ${KINDS[kind]}, at ${pose.x.toFixed(3)}, ${pose.y.toFixed(3)}`;
-  return [told, ...problems.map(({ message, mistake }) => `${mistake ? "Mistake: " : ""}${message}`)].join(". ");
+  const told = t("{name}, {kinds}, at {x}, {y}", { name: plain(name), kinds: KINDS[kind], x: pose.x.toFixed(3), y: pose.y.toFixed(3) });
+  return [told, ...problems.map(({ message, mistake }) => `${mistake ? t("Mistake:") : ""}${message}`)].join(". ");
 }
 
 /** Follow a pointer until it lets go: by how much in metres; null where it hardly moved or gave up. */

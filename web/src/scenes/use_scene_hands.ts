@@ -4,6 +4,7 @@ import type { EditedText } from "../document/use_text";
 import { CannotEdit } from "../yaml_text/source";
 import { moved, wrapped } from "./moved_text";
 import type { Pose, SceneSource, Thing } from "./scene_source";
+import { t } from "../words/words";
 
 export interface SceneHands {
   /** Why the last thing could not be done; empty if it could. */
@@ -18,7 +19,7 @@ export interface SceneHands {
 export function useSceneHands(text: EditedText, source: SceneSource, current: boolean): SceneHands {
   const [said, say] = useState("");
   const change = (thing: Thing, to: Partial<Pose>, become: (text: string) => void) => {
-    if (!current) return say("The drawing is not what the text says now: put the text right, or wait a moment.");
+    if (!current) return say(t("The drawing is not what the text says now: put the text right, or wait a moment."));
     try {
       become(moved(text.text, thing, inFile(thing, source, to)));
       say("");

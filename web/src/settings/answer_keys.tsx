@@ -1,11 +1,12 @@
 // The single keys that answer: changed, or switched off, as whoever dictates or types needs it.
 import { useState } from "preact/hooks";
 import { DEFAULT_KEYS, type Keys, keys, keysOn } from "../state/preferences";
+import { t } from "../words/words";
 
 const NAMES: readonly (readonly [keyof Keys, string])[] = [
-  ["yes", "Yes"],
-  ["no", "No"],
-  ["repeat", "Repeat the question"],
+  ["yes", t("Yes")],
+  ["no", t("No")],
+  ["repeat", t("Repeat the question")],
 ];
 
 export function AnswerKeys() {
@@ -13,13 +14,17 @@ export function AnswerKeys() {
   const change = (which: keyof Keys, input: HTMLInputElement) => {
     const key = input.value.trim().toLowerCase();
     const taken = NAMES.find(([other]) => other !== which && key !== "" && keys.value[other] === key);
-    setMistake(taken === undefined ? "" : `“${key.toUpperCase()}” is the key for “${taken[1]}” already.`);
+    setMistake(
+      taken === undefined
+        ? ""
+        : t("“{key}” is the key for “{taken}” already.", { key: key.toUpperCase(), taken: taken[1] }),
+    );
     if (taken === undefined) keys.value = { ...keys.value, [which]: key };
     else input.value = keys.value[which];
   };
   return (
     <fieldset class="panel setting-group">
-      <legend>Keys for answering</legend>
+      <legend>{t("Keys for answering")}</legend>
       <label class="choice">
         <input
           type="checkbox"
@@ -28,7 +33,7 @@ export function AnswerKeys() {
             keysOn.value = event.currentTarget.checked;
           }}
         />
-        Answer with single keys
+        {t("Answer with single keys")}
       </label>
       <div class="key-fields">
         {NAMES.map(([which, text]) => (
@@ -49,7 +54,7 @@ export function AnswerKeys() {
         ))}
       </div>
       <p id="keys-hint" class="small quiet">
-        Leave a field empty to switch one key off. Escape always takes an answer back while it still can be.
+        {t("Leave a field empty to switch one key off. Escape always takes an answer back while it still can be.")}
       </p>
       <p id="keys-mistake" class="mistake" role="status">
         {mistake}
@@ -63,7 +68,7 @@ export function AnswerKeys() {
             setMistake("");
           }}
         >
-          Back to Y, N and R
+          {t("Back to Y, N and R")}
         </button>
       </p>
     </fieldset>

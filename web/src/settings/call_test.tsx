@@ -2,12 +2,13 @@
 import { useState } from "preact/hooks";
 import { testCalling } from "../calling/call_test";
 import { type Finding, type State, verdict } from "../calling/findings";
+import { t } from "../words/words";
 import "./call_test.css";
 
 const SIGNS: Readonly<Record<State, { path: string; name: string }>> = {
-  well: { path: "m5 10.5 3.5 3.5L15 7", name: "Works" },
-  bad: { path: "M10 4.5v7M10 14.5v1", name: "Does not work" },
-  unused: { path: "M6 10h8", name: "Not known" },
+  well: { path: "m5 10.5 3.5 3.5L15 7", name: t("Works") },
+  bad: { path: "M10 4.5v7M10 14.5v1", name: t("Does not work") },
+  unused: { path: "M6 10h8", name: t("Not known") },
 };
 
 export function CallTest() {
@@ -23,7 +24,7 @@ export function CallTest() {
     <div class="call-test">
       <p>
         <button type="button" class="button" disabled={state === "running"} onClick={() => void begin()}>
-          {state === "running" ? "Trying …" : "Try whether this device calls me"}
+          {state === "running" ? t("Trying …") : t("Try whether this device calls me")}
         </button>
       </p>
       {findings.length > 0 && (

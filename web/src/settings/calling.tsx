@@ -5,11 +5,12 @@ import { callThisDevice, callThisDeviceNoMore, whyNoPush } from "../calling/push
 import { may } from "../state/access";
 import { CallTest } from "./call_test";
 import { Notifications } from "./notifications";
+import { t } from "../words/words";
 
 export function Calling() {
   return (
     <section class="panel setting-group" aria-labelledby="calling-title">
-      <h2 id="calling-title">When a robot asks</h2>
+      <h2 id="calling-title">{t("When a robot asks")}</h2>
       <label class="choice">
         <input
           type="checkbox"
@@ -18,7 +19,7 @@ export function Calling() {
             soundOn.value = event.currentTarget.checked;
           }}
         />
-        Call by sound, again and again until somebody is on it
+        {t("Call by sound, again and again until somebody is on it")}
       </label>
       {may("helper") && <CallDevice />}
       <Notifications />
@@ -31,10 +32,10 @@ export function Calling() {
             besideRobot.value = event.currentTarget.checked;
           }}
         />
-        This device stands beside the robot
+        {t("This device stands beside the robot")}
       </label>
       <p id="beside-hint" class="small quiet">
-        Its screen stays on, questions are spoken, and it listens for answers from the start.
+        {t("Its screen stays on, questions are spoken, and it listens for answers from the start.")}
       </p>
       <CallTest />
     </section>
@@ -67,7 +68,7 @@ function CallDevice() {
           aria-describedby="push-hint"
           onChange={(event) => void change(event.currentTarget.checked)}
         />
-        Call this device also while this page is closed
+        {t("Call this device also while this page is closed")}
       </label>
       <p id="push-hint" class={mistake === "" ? "small quiet" : "small mistake"} role="status">
         {mistake !== "" ? mistake : (why ?? "")}

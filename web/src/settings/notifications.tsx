@@ -1,13 +1,14 @@
 // Desktop notifications: the browser is asked for leave only when the helper asks for them.
 import { useState } from "preact/hooks";
 import { notificationsOn, pushOn } from "../state/preferences";
+import { t } from "../words/words";
 
 export function Notifications() {
   const available = "Notification" in window;
   const [allowed, setAllowed] = useState(available ? Notification.permission : "denied");
   // Calls to this device show the same.
   if (pushOn.value) return null;
-  if (!available) return <p class="small quiet">This browser has no desktop notifications.</p>;
+  if (!available) return <p class="small quiet">{t("This browser has no desktop notifications.")}</p>;
   const ask = async () => {
     const answer = await Notification.requestPermission();
     setAllowed(answer);
@@ -23,17 +24,18 @@ export function Notifications() {
             notificationsOn.value = event.currentTarget.checked;
           }}
         />
-        Show a desktop notification while this page is in the background
+        {t("Show a desktop notification while this page is in the background")}
       </label>
     );
   }
   return (
     <div class="setting-row">
       <button type="button" class="button" disabled={allowed === "denied"} onClick={() => void ask()}>
-        Allow desktop notifications
+        {t("Allow desktop notifications")}
       </button>
       <p class="small quiet" role="status">
-        {allowed === "denied" && "This browser does not let this page notify you. Its site settings can change that."}
+        {allowed === "denied" &&
+          t("This browser does not let this page notify you. Its site settings can change that.")}
       </p>
     </div>
   );

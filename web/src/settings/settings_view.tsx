@@ -4,14 +4,16 @@ import { principal } from "../state/access";
 import { helperName, type Theme, theme } from "../state/preferences";
 import { call, signOut, tokenRequired } from "../state/service";
 import { AnswerKeys } from "./answer_keys";
+import { LanguageChoice } from "./language_choice";
 import { Calling } from "./calling";
 import { VoiceChoice } from "./voice_choice";
+import { t } from "../words/words";
 import "./settings.css";
 
 const THEMES: readonly (readonly [Theme, string])[] = [
-  ["system", "As the device"],
-  ["light", "Light"],
-  ["dark", "Dark"],
+  ["system", t("As the device")],
+  ["light", t("Light")],
+  ["dark", t("Dark")],
 ];
 
 export function SettingsView() {
@@ -21,10 +23,10 @@ export function SettingsView() {
   };
   return (
     <section class="page settings">
-      <h1>Settings</h1>
-      <p class="quiet">They are kept on this device.</p>
+      <h1>{t("Settings")}</h1>
+      <p class="quiet">{t("They are kept on this device.")}</p>
       <div class="panel field">
-        <label for="helper-name">Your name</label>
+        <label for="helper-name">{t("Your name")}</label>
         <input
           id="helper-name"
           value={helperName.value}
@@ -34,14 +36,17 @@ export function SettingsView() {
           aria-describedby="helper-name-hint"
         />
         <p id="helper-name-hint" class="small quiet">
-          {principal.value === null ? "The robots and the other helpers see who answered." : "It goes with your token."}
+          {principal.value === null
+            ? t("The robots and the other helpers see who answered.")
+            : t("It goes with your token.")}
         </p>
       </div>
+      <LanguageChoice />
       <AnswerKeys />
       <Calling />
       <VoiceChoice />
       <fieldset class="panel setting-group">
-        <legend>Colours</legend>
+        <legend>{t("Colours")}</legend>
         <div class="choices">
           {THEMES.map(([value, text]) => (
             <label key={value} class="choice">
@@ -73,7 +78,7 @@ function SignOut() {
     <>
       <p>
         <button class="button" type="button" onClick={leave}>
-          Sign out
+          {t("Sign out")}
         </button>
       </p>
       {mistake !== null && (

@@ -2,17 +2,19 @@
 import { useEffect, useState } from "preact/hooks";
 import { type Voice, voice } from "../state/preferences";
 import { browserVoices } from "../speech/browser_voice";
+import { t } from "../words/words";
+import { language } from "../words/language";
 
 const VOICES: readonly (readonly [Voice, string])[] = [
-  ["service", "The service's voice"],
-  ["browser", "This browser's own voice"],
+  ["service", t("The service's voice")],
+  ["browser", t("This browser's own voice")],
 ];
 
 export function VoiceChoice() {
   const own = useOwnVoice();
   return (
     <fieldset class="panel setting-group">
-      <legend>Voice of the robots</legend>
+      <legend>{t("Voice of the robots")}</legend>
       <div class="choices">
         {VOICES.map(([value, text]) => (
           <label key={value} class="choice">
@@ -29,7 +31,12 @@ export function VoiceChoice() {
           </label>
         ))}
       </div>
-      {!own && <p class="small quiet">This browser has no voice of its own.</p>}
+      {language !== "en" && (
+        <p class="small quiet">
+          {t("The service speaks English: where this browser has a voice of your language, that one speaks.")}
+        </p>
+      )}
+      {!own && <p class="small quiet">{t("This browser has no voice of its own.")}</p>}
     </fieldset>
   );
 }

@@ -4,6 +4,7 @@ import { useState } from "preact/hooks";
 import { helperName } from "../state/preferences";
 import { call, session, sessionEnded, signIn } from "../state/service";
 import { Refusal } from "../wire/rest";
+import { t } from "../words/words";
 import "./sign_in.css";
 
 export function SignIn() {
@@ -12,7 +13,7 @@ export function SignIn() {
       <div class="sign-in-brand">
         <img src="/icon.svg" alt="" width="56" height="56" />
         <h1>Mend</h1>
-        <p class="quiet">Robots ask here when they are stuck. You answer yes or no.</p>
+        <p class="quiet">{t("Robots ask here when they are stuck. You answer yes or no.")}</p>
       </div>
       {session.value === "needs_token" ? <TokenForm /> : <NameForm />}
     </main>
@@ -31,17 +32,21 @@ function TokenForm() {
     try {
       await signIn(String(new FormData(form).get("token")).trim());
     } catch (error) {
-      setMistake(error instanceof Refusal && error.status === 401 ? "This is not the token." : (error as Error).message);
+      setMistake(error instanceof Refusal && error.status === 401 ? t("This is not the token.") : (error as Error).message);
       form.querySelector("input")?.select();
     } finally {
       setBusy(false);
     }
   };
   return (
-    <Form onSubmit={(event) => void submit(event)} button="Sign in" busy={busy}>
-      {sessionEnded.value && <p>Your session has ended, {helperName.value}. Nothing is lost: sign in and go on.</p>}
+    <Form onSubmit={(event) => void submit(event)} button={t("Sign in")} busy={busy}>
+      {sessionEnded.value && (
+        <p>
+          {t("Your session has ended, {helper_name}. Nothing is lost: sign in and go on.", { helper_name: helperName.value })}
+        </p>
+      )}
       <div class="field">
-        <label for="token">Token</label>
+        <label for="token">{t("Token")}</label>
         <div class="token-row">
           <input
             {...(shown ? { type: "text" } : { type: "password" })}
@@ -55,11 +60,11 @@ function TokenForm() {
             aria-describedby="token-hint token-mistake"
           />
           <button class="button" type="button" aria-pressed={shown} onClick={() => setShown(!shown)}>
-            Show
+            {t("Show")}
           </button>
         </div>
         <p id="token-hint" class="small quiet">
-          Your own, or the service's (its setting MEND_TOKEN): ask whoever runs it.
+          {t("Your own, or the service's (its setting MEND_TOKEN): ask whoever runs it.")}
         </p>
       </div>
       <p id="token-mistake" class="mistake" role="alert">
@@ -76,12 +81,12 @@ function NameForm() {
     if (name !== "") void call(name);
   };
   return (
-    <Form onSubmit={submit} button="Begin" busy={false}>
+    <Form onSubmit={submit} button={t("Begin")} busy={false}>
       <div class="field">
-        <label for="name">Your name</label>
+        <label for="name">{t("Your name")}</label>
         <input id="name" name="name" required maxlength={64} autocomplete="nickname" aria-describedby="name-hint" />
         <p id="name-hint" class="small quiet">
-          The robots and the other helpers see who answered.
+          {t("The robots and the other helpers see who answered.")}
         </p>
       </div>
     </Form>

@@ -1,7 +1,8 @@
 // The browser's own recognizer of speech, where it has one that works on this device: what people say goes nowhere else.
+import { t } from "../words/words";
 
-const LANGUAGE = "en-US";
-const LOCAL = { langs: [LANGUAGE], processLocally: true };
+/** What people ask for in words of their own is understood in English alone. */
+export const ENGLISH = "en-US";
 
 interface Recognition extends EventTarget {
   lang: string;
@@ -13,7 +14,7 @@ interface Recognition extends EventTarget {
 interface RecognitionClass {
   new (): Recognition;
   /** Absent where recognition is some server's. */
-  available?: (options: typeof LOCAL) => Promise<string>;
+  available?: (options: { langs: readonly string[]; processLocally: boolean }) => Promise<string>;
 }
 
 interface Heard extends Event {
@@ -25,28 +26,28 @@ function recognitionHere(): RecognitionClass | undefined {
 }
 
 /** Whether speech is recognized here without leaving this device. */
-export async function canHear(): Promise<boolean> {
+export async function canHear(language: string): Promise<boolean> {
   const here = recognitionHere();
   if (here?.available === undefined) return false;
-  return (await here.available(LOCAL).catch(() => "unavailable")) === "available";
+  return (await here.available({ langs: [language], processLocally: true }).catch(() => "unavailable")) === "available";
 }
 
 /** What is said next; empty where nothing was understood. Rejects where nobody may listen. */
-export function hear(signal: AbortSignal): Promise<string> {
+export function hear(signal: AbortSignal, language: string): Promise<string> {
   return new Promise((resolve, reject) => {
     const here = recognitionHere();
     if (here === undefined) {
-      reject(new Error("This browser does not recognize speech."));
+      reject(new Error(t("This browser does not recognize speech.")));
       return;
     }
     const recognition = new here();
-    recognition.lang = LANGUAGE;
+    recognition.lang = language;
     recognition.processLocally = true;
     recognition.addEventListener("result", (event) => resolve((event as Heard).results[0]?.[0]?.transcript ?? ""));
     recognition.addEventListener("error", (event) => {
       const { error } = event as Event & { error?: string };
       if (error === "no-speech" || error === "aborted") resolve("");
-      else reject(new Error("The microphone cannot be used: type instead."));
+      else reject(new Error(t("The microphone cannot be used: type instead.")));
     });
     // After a result this changes nothing.
     recognition.addEventListener("end", () => resolve(""));

@@ -1,5 +1,6 @@
 // The microphone as 16 kHz PCM.
 import workletAddress from "./microphone_worklet?worker&url";
+import { t } from "../words/words";
 
 const SAMPLE_RATE_HZ = 16_000;
 
@@ -9,7 +10,7 @@ export interface Microphone {
 
 /** Open it; rejects when there is none or the helper does not let this page listen. */
 export async function openMicrophone(onFrame: (pcm: ArrayBuffer) => void): Promise<Microphone> {
-  if (navigator.mediaDevices === undefined) throw new Error("the browser lets only secure pages (https) listen");
+  if (navigator.mediaDevices === undefined) throw new Error(t("the browser lets only secure pages (https) listen"));
   const stream = await navigator.mediaDevices.getUserMedia({
     audio: { channelCount: 1, echoCancellation: true, noiseSuppression: true },
   });

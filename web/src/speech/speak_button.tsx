@@ -1,19 +1,22 @@
 // A button to say something; it is there where the browser recognizes speech on this device.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { canHear, hear } from "./browser_ear";
+import { canHear, ENGLISH, hear } from "./browser_ear";
+import { t } from "../words/words";
 
 interface SpeakButtonProps {
   label: string;
+  /** What is spoken. */
+  language?: string;
   heard: (words: string) => void;
 }
 
-export function SpeakButton({ label, heard }: SpeakButtonProps) {
+export function SpeakButton({ label, language = ENGLISH, heard }: SpeakButtonProps) {
   const [can, setCan] = useState(false);
   const [listening, setListening] = useState(false);
   const [failure, setFailure] = useState("");
   const stop = useRef<AbortController | null>(null);
   useEffect(() => {
-    void canHear().then(setCan);
+    void canHear(language).then(setCan);
     return () => stop.current?.abort();
   }, []);
   if (!can) return null;
@@ -25,9 +28,9 @@ export function SpeakButton({ label, heard }: SpeakButtonProps) {
     setListening(true);
     setFailure("");
     try {
-      const words = await hear(controller.signal);
+      const words = await hear(controller.signal, language);
       if (controller.signal.aborted) return;
-      if (words === "") setFailure("I have heard nothing: say it once more, or type it.");
+      if (words === "") setFailure(t("I have heard nothing: say it once more, or type it."));
       else heard(words);
     } catch (error) {
       setFailure(error instanceof Error ? error.message : String(error));
@@ -43,7 +46,7 @@ export function SpeakButton({ label, heard }: SpeakButtonProps) {
         aria-pressed={listening}
         onClick={() => (listening ? stop.current?.abort() : void listen())}
       >
-        {listening ? "Listening …" : label}
+        {listening ? t("Listening …") : label}
       </button>
       <p class="mistake small" role="alert">
         {failure}

@@ -14,6 +14,9 @@ export type SpeechPhase =
 
 export const speechPhase = signal<SpeechPhase>("off");
 
+/** How to say yes and no to the service, where it listens to another language than the page's; null where it does not. */
+export const listensTo = signal<{ language: string; yes: string; no: string; done: string; cannot: string } | null>(null);
+
 /** What was understood last: the phrase, or null where it was none. */
 export const lastHeard = signal<{ phrase: string | null } | null>(null);
 

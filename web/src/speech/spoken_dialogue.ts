@@ -10,17 +10,21 @@ import { tellEnding } from "../state/endings";
 import { helperName } from "../state/preferences";
 import { awaitingHelp, dialogueOf, type Question, together } from "../state/questions";
 import * as rest from "../wire/rest";
-import type { ToSpeaker } from "../wire/types";
+import type { SpeechView, ToSpeaker } from "../wire/types";
 import { type Microphone, openMicrophone } from "./microphone";
 import { connectSpeech, type SpeechSocket } from "./speech_socket";
-import { lastHeard, speechLacks, speechPhase } from "./speech_state";
+import { lastHeard, listensTo, speechLacks, speechPhase } from "./speech_state";
 import { hush, say } from "./voice";
+import { t } from "../words/words";
+import { browserVoices } from "./browser_voice";
+import { language, nameOf } from "../words/language";
 
 /** Switch it on; resolves with how to switch it off. */
 export async function beginToSpeak(): Promise<() => void> {
   const [abilities, mistake, microphone] = await abilitiesAndMicrophone();
   const conversation = new SpokenDialogue(abilities.recognition && microphone !== null);
   if (microphone !== null) microphone.onFrame = (pcm) => conversation.hear(pcm);
+  listensTo.value = abilities.listensTo;
   speechLacks.value = [...abilities.lacks, ...(mistake === null ? [] : [mistake])].join(" ");
   return () => {
     conversation.end();
@@ -32,22 +36,33 @@ export async function beginToSpeak(): Promise<() => void> {
 }
 
 interface Abilities {
+  listensTo: typeof listensTo.value;
   recognition: boolean;
   lacks: string[];
+}
+
+function heardAs(spoken: string, commands: SpeechView["commands"]): Abilities["listensTo"] {
+  const phrase = (command: string) => commands[command]?.[0] ?? "";
+  const said = { yes: phrase("yes"), no: phrase("no"), done: phrase("done"), cannot: phrase("cannot") };
+  return { language: nameOf(spoken, language), ...said };
 }
 
 type OpenMicrophone = Microphone & { onFrame(pcm: ArrayBuffer): void };
 
 async function abilitiesAndMicrophone(): Promise<[Abilities, string | null, OpenMicrophone | null]> {
   const abilities = await rest.speech().then(
-    ({ voice, recognition }) => ({
+    ({ voice, recognition, language: heard, commands }) => ({
+      listensTo: heard === language ? null : heardAs(heard, commands),
       recognition: recognition.available,
       lacks: [
-        ...(voice.available ? [] : [`The service has no voice (${voice.why_not}): questions are shown.`]),
-        ...(recognition.available ? [] : [`It cannot listen (${recognition.why_not}): please use the buttons.`]),
+        ...(voice.available ? [] : [t("The service has no voice ({why_not}): questions are shown.", { why_not: voice.why_not ?? "" })]),
+        ...(!voice.available || language === "en" || browserVoices().length > 0
+          ? []
+          : [t("This browser has no voice of your language: the service speaks English.")]),
+        ...(recognition.available ? [] : [t("It cannot listen ({why_not}): please use the buttons.", { why_not: recognition.why_not ?? "" })]),
       ],
     }),
-    (error: Error) => ({ recognition: false, lacks: [error.message] }),
+    (error: Error) => ({ listensTo: null, recognition: false, lacks: [error.message] }),
   );
   if (!abilities.recognition) return [abilities, null, null];
   const held = { onFrame: (_: ArrayBuffer) => undefined as void };
@@ -56,7 +71,7 @@ async function abilitiesAndMicrophone(): Promise<[Abilities, string | null, Open
     return [abilities, null, Object.assign(held, microphone)];
   } catch (error) {
     const why = (error as Error).message;
-    return [abilities, `The microphone cannot be used (${why}): please use the buttons.`, null];
+    return [abilities, t("The microphone cannot be used ({why}): please use the buttons.", { why }), null];
   }
 }
 
@@ -212,8 +227,8 @@ class SpokenDialogue {
     else if (command === "yes" || command === "no") answer(question, command);
     if (command === "stop") {
       rest.pauseRun(question.run).then(
-        () => tellEnding(question, "You said stop: the run is paused."),
-        (error: Error) => tellEnding(question, `You said stop, but: ${error.message}`),
+        () => tellEnding(question, t("You said stop: the run is paused.")),
+        (error: Error) => tellEnding(question, t("You said stop, but: {message}", { message: error.message })),
       );
     }
   }

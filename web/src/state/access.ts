@@ -1,6 +1,7 @@
 // Who is signed in here, and what they may do. The service decides; this only spares people the attempt.
 import { signal } from "@preact/signals";
 import type { SessionView } from "../wire/types";
+import { t } from "../words/words";
 
 export type Role = NonNullable<SessionView["role"]>;
 
@@ -17,5 +18,5 @@ export function may(needed: Role): boolean {
 
 /** Why somebody may not do `what` ("Answering"), as one sentence. */
 export function whyNot(what: string, needed: Role): string {
-  return `${what} needs the role ${needed}; yours is ${role.value ?? "none"}.`;
+  return t("{what} needs the role {needed}; yours is {yours}.", { what, needed, yours: role.value ?? t("none") });
 }

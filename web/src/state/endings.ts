@@ -2,6 +2,8 @@
 import { signal } from "@preact/signals";
 import * as rest from "../wire/rest";
 import type { CloseReason, DialogueView } from "../wire/types";
+import { t } from "../words/words";
+import { said } from "../words/said";
 
 export interface Ending {
   id: number;
@@ -42,23 +44,24 @@ export function dismissEnding(id: number): void {
 export async function tellHowItEnded(gone: DialogueView): Promise<void> {
   const found = await rest.dialogue(gone.dialogue).catch(() => null);
   const by = found?.answered_by ?? null;
-  if (found?.reason === "resolved" && by !== null) tellEnding(gone, `It was closed meanwhile; ${by} had answered.`);
+  if (found?.reason === "resolved" && by !== null)
+    tellEnding(gone, t("It was closed meanwhile; {by} had answered.", { by }));
   else tellEnding(gone, closing((found?.reason ?? "aborted") as CloseReason, null));
 }
 
 /** Why a dialogue closed, in words; `statement` is what the robot said last. */
 export function closing(reason: CloseReason, statement: string | null): string {
-  const said = statement === null ? "" : ` “${statement}”`;
+  const last = statement === null ? "" : ` ${t("“{text}”", { text: said(statement) })}`;
   switch (reason) {
     case "resolved":
-      return `Settled.${said}`;
+      return t("Settled.{last}", { last });
     case "withdrawn":
-      return `No longer needed, by what the robot sees.${said}`;
+      return t("No longer needed, by what the robot sees.{last}", { last });
     case "gave_up":
-      return `Closed: no help was seen.${said}`;
+      return t("Closed: no help was seen.{last}", { last });
     case "left_out":
-      return `Settled.${said}`;
+      return t("Settled.{last}", { last });
     case "aborted":
-      return "No longer needed: the robot has stopped this task.";
+      return t("No longer needed: the robot has stopped this task.");
   }
 }

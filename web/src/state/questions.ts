@@ -13,6 +13,8 @@ import type {
 } from "../wire/types";
 import { closing, tellEnding, tellHowItEnded } from "./endings";
 import { readRunClock } from "./run_clock";
+import { t } from "../words/words";
+import { learn } from "../words/said";
 
 /** One open dialogue, with all that its card shows. */
 export interface Question extends DialogueView {
@@ -69,6 +71,7 @@ export function dialogueOf(id: string): Question | undefined {
 /** Take over the service's word on what is open; `runTimes` are the clocks of the runs. */
 export function takeDialogues(views: readonly DialogueView[], runTimes: ReadonlyMap<string, number>): void {
   for (const [run, time] of runTimes) readRunClock(run, time);
+  for (const { prompt } of views) if (prompt !== null) learn(prompt.wordings);
   const before = open.value;
   const next = new Map<string, Question>();
   for (const [index, view] of views.entries()) {
@@ -110,6 +113,7 @@ export function takeDialogueEvent(event: Event, me: string): void {
 function change(before: Question, event: Extract<Event, { dialogue: string | null }>, me: string): void {
   switch (event.type) {
     case "prompt":
+      learn(event.wordings);
       put(prompted(before, event));
       return;
     case "clip_recorded":
@@ -122,7 +126,7 @@ function change(before: Question, event: Extract<Event, { dialogue: string | nul
     }
     case "answered":
       if (event.helper !== me && !before.scripted) {
-        tellEnding(before, `${event.helper} answered ${event.answer.toUpperCase()}.`);
+        tellEnding(before, t("{helper} answered {answer}.", { helper: event.helper, answer: event.answer === "yes" ? t("YES") : t("NO") }));
       }
       put({ ...before, awaiting: null, answered_by: event.helper });
       return;

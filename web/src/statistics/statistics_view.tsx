@@ -6,9 +6,11 @@ import { ANYTHING, queryOf, type Search } from "../run/search";
 import { useSettled } from "../run/use_settled";
 import { plain } from "../tree/words";
 import type { GroupedStatistics, Statistics } from "../wire/types";
-import { answersOf, counted, type Figure, outcomesOf, rateOf, runsOf } from "./statistics_words";
+import { answersOf, faultsOf, type Figure, outcomesOf, rateOf, runsOf } from "./statistics_words";
 import { useStatistics } from "./use_statistics";
 import "../run/search_fields.css";
+import { t } from "../words/words";
+import { locale } from "../words/language";
 import "./statistics.css";
 
 interface Chosen {
@@ -27,16 +29,16 @@ export function StatisticsView() {
   return (
     <section class="page">
       <div class="page-head">
-        <h1>Statistics</h1>
+        <h1>{t("Statistics")}</h1>
         <a class="button" href="/issues">
-          Issues
+          {t("Issues")}
         </a>
       </div>
       <Choice found={found} />
       <p class="mistake" role="alert">
         {failure}
       </p>
-      {found === null && failure === "" && <p class="quiet">Loading …</p>}
+      {found === null && failure === "" && <p class="quiet">{t("Loading …")}</p>}
       {found !== null && <Told found={found} />}
     </section>
   );
@@ -59,7 +61,7 @@ function Choice({ found }: { found: Statistics | null }) {
   return (
     <search class="search">
       <div class="field">
-        <label for="statistics-from">Runs from</label>
+        <label for="statistics-from">{t("Runs from")}</label>
         <input
           id="statistics-from"
           type="date"
@@ -69,7 +71,7 @@ function Choice({ found }: { found: Statistics | null }) {
         />
       </div>
       <div class="field">
-        <label for="statistics-to">To</label>
+        <label for="statistics-to">{t("To")}</label>
         <input
           id="statistics-to"
           type="date"
@@ -78,10 +80,10 @@ function Choice({ found }: { found: Statistics | null }) {
           onInput={(event) => set({ days: { ...days, to: event.currentTarget.value } })}
         />
       </div>
-      <Names id="statistics-tree" label="Task tree" names={trees} value={tree} onChoose={(name) => set({ tree: name })} />
-      <Names id="statistics-robot" label="Robot" names={robots} value={robot} onChoose={(name) => set({ robot: name })} />
+      <Names id="statistics-tree" label={t("Task tree")} names={trees} value={tree} onChoose={(name) => set({ tree: name })} />
+      <Names id="statistics-robot" label={t("Robot")} names={robots} value={robot} onChoose={(name) => set({ robot: name })} />
       <button class="button" type="button" disabled={queryOfChosen(chosen.value) === ""} onClick={() => set(ALL)}>
-        Clear
+        {t("Clear")}
       </button>
     </search>
   );
@@ -110,7 +112,7 @@ function Names({ id, label, names, value, onChoose }: NamesProps) {
     <div class="field">
       <label for={id}>{label}</label>
       <select id={id} value={value} onChange={(event) => onChoose(event.currentTarget.value)}>
-        <option value="">All</option>
+        <option value="">{t("All")}</option>
         {all.map((name) => (
           <option key={name} value={name}>
             {plain(name)}
@@ -123,23 +125,24 @@ function Names({ id, label, names, value, onChoose }: NamesProps) {
 
 function Told({ found }: { found: Statistics }) {
   const { runs, total } = found;
-  if (runs.total === 0) return <p class="panel empty quiet">There is no run like this.</p>;
+  if (runs.total === 0) return <p class="panel empty quiet">{t("There is no run like this.")}</p>;
   return (
     <>
       <dl class="panel figures">
-        <Tile name="Runs" figure={runsOf(runs)} />
-        <Tile name="Faults per 1,000 picks" figure={rateOf(total)} />
-        <Tile name="Time to answer, median" figure={answersOf(total.answers)} />
-        <Tile name="Outcomes" figure={{ value: counted(total.faults, "fault"), of: outcomesOf(total.outcomes) }} />
+        <Tile name={t("Runs")} figure={runsOf(runs)} />
+        <Tile name={t("Faults per 1,000 picks")} figure={rateOf(total)} />
+        <Tile name={t("Time to answer, median")} figure={answersOf(total.answers)} />
+        <Tile name={t("Outcomes")} figure={{ value: faultsOf(total.faults), of: outcomesOf(total.outcomes) }} />
       </dl>
       <p class="quiet small">
-        A fault is an issue that a robot raised. A pick is a gripper that closed to take something. An answer is a person's, from when its
-        question was put first.
+        {t(
+          "A fault is an issue that a robot raised. A pick is a gripper that closed to take something. An answer is a person's, from when its question was put first.",
+        )}
       </p>
-      <Groups title="By kind of fault" name="Fault" grouped={found.by_issue} allPicks />
-      <Groups title="By part" name="Part" grouped={found.by_part} />
-      <Groups title="By robot" name="Robot" grouped={found.by_robot} />
-      <Groups title="By task tree" name="Task tree" grouped={found.by_tree} />
+      <Groups title={t("By kind of fault")} kind="fault" name={t("Fault")} grouped={found.by_issue} allPicks />
+      <Groups title={t("By part")} kind="part" name={t("Part")} grouped={found.by_part} />
+      <Groups title={t("By robot")} kind="robot" name={t("Robot")} grouped={found.by_robot} />
+      <Groups title={t("By task tree")} kind="task-tree" name={t("Task tree")} grouped={found.by_tree} />
     </>
   );
 }
@@ -158,6 +161,8 @@ function Tile({ name, figure }: { name: string; figure: Figure }) {
 
 interface GroupsProps {
   title: string;
+  /** For the ids of the page. */
+  kind: string;
   /** What the groups are. */
   name: string;
   grouped: GroupedStatistics;
@@ -165,24 +170,24 @@ interface GroupsProps {
   allPicks?: boolean;
 }
 
-function Groups({ title, name, grouped, allPicks = false }: GroupsProps) {
-  const id = `statistics-${name.toLowerCase().replace(" ", "-")}-groups`;
+function Groups({ title, kind, name, grouped, allPicks = false }: GroupsProps) {
+  const id = `statistics-${kind}-groups`;
   return (
     <section class="panel statistics">
       <h2 id={id}>{title}</h2>
       {grouped.groups.length === 0 ? (
-        <p class="quiet">{allPicks ? "No faults." : "No faults and no picks."}</p>
+        <p class="quiet">{allPicks ? t("No faults.") : t("No faults and no picks.")}</p>
       ) : (
         <div class="statistics-table" role="region" aria-labelledby={id} tabIndex={0}>
           <table>
             <thead>
               <tr>
                 <th scope="col">{name}</th>
-                <th scope="col">Faults</th>
-                <th scope="col">{allPicks ? "All picks" : "Picks"}</th>
-                <th scope="col">Faults per 1,000 picks</th>
-                <th scope="col">Time to answer</th>
-                <th scope="col">Outcomes</th>
+                <th scope="col">{t("Faults")}</th>
+                <th scope="col">{allPicks ? t("All picks") : t("Picks")}</th>
+                <th scope="col">{t("Faults per 1,000 picks")}</th>
+                <th scope="col">{t("Time to answer")}</th>
+                <th scope="col">{t("Outcomes")}</th>
               </tr>
             </thead>
             <tbody>
@@ -193,7 +198,11 @@ function Groups({ title, name, grouped, allPicks = false }: GroupsProps) {
           </table>
         </div>
       )}
-      {grouped.left_out > 0 && <p class="quiet small">and {grouped.left_out.toLocaleString("en")} more, with fewer faults</p>}
+      {grouped.left_out > 0 && (
+        <p class="quiet small">
+          {t("and {count} more, with fewer faults", { count: grouped.left_out.toLocaleString(locale) })}
+        </p>
+      )}
     </section>
   );
 }
@@ -208,8 +217,8 @@ function Row({ group }: { group: GroupedStatistics["groups"][number] }) {
           {plain(group.name)}
         </a>
       </th>
-      <td>{group.faults.toLocaleString("en")}</td>
-      <td>{group.picks === 0 ? "none" : group.picks.toLocaleString("en")}</td>
+      <td>{group.faults.toLocaleString(locale)}</td>
+      <td>{group.picks === 0 ? t("none") : group.picks.toLocaleString(locale)}</td>
       <td>{rateOf(group).value}</td>
       <td>
         {answers.value} <span class="small quiet">{answers.of}</span>

@@ -1,6 +1,7 @@
 // A place, chosen by touch: its floor, then its number on a keypad or its name from a list.
 import { useState } from "preact/hooks";
 import { byFloor, said } from "../requests/places";
+import { t } from "../words/words";
 
 interface PlacePadProps {
   places: readonly string[];
@@ -25,11 +26,11 @@ export function PlacePad({ places, here, floor: first, choose }: PlacePadProps) 
     <div class="pad">
       {here !== null && (
         <button class="button touch-button" type="button" onClick={() => choose(here)}>
-          Here ({said(here)})
+          {t("Here ({here})", { here: said(here) })}
         </button>
       )}
       {floors.size > 1 && (
-        <div class="pad-floors" role="group" aria-label="Floor">
+        <div class="pad-floors" role="group" aria-label={t("Floor")}>
           {[...floors.keys()].map((each) => (
             <button
               key={each}
@@ -44,8 +45,8 @@ export function PlacePad({ places, here, floor: first, choose }: PlacePadProps) 
         </div>
       )}
       <div class="pad-room">
-        <div class="pad-keys" role="group" aria-label="Number">
-          <output class="pad-digits" aria-label="Number so far">
+        <div class="pad-keys" role="group" aria-label={t("Number")}>
+          <output class="pad-digits" aria-label={t("Number so far")}>
             {digits}
           </output>
           {KEYS.map((key) => (
@@ -59,7 +60,7 @@ export function PlacePad({ places, here, floor: first, choose }: PlacePadProps) 
             disabled={digits === ""}
             onClick={() => setDigits(digits.slice(0, -1))}
           >
-            Delete
+            {t("Delete")}
           </button>
         </div>
         <div class="pad-places">
@@ -69,8 +70,9 @@ export function PlacePad({ places, here, floor: first, choose }: PlacePadProps) 
             </button>
           ))}
           <p role="status" class="quiet">
-            {found.length === 0 && `No place on this floor has ${digits} in its name.`}
-            {found.length > shown.length && `${found.length - shown.length} more: press the number of the room.`}
+            {found.length === 0 && t("No place on this floor has {digits} in its name.", { digits })}
+            {found.length > shown.length &&
+              t("{count} more: press the number of the room.", { count: found.length - shown.length })}
           </p>
         </div>
       </div>

@@ -3,6 +3,7 @@ import { useEffect, useId, useRef, useState } from "preact/hooks";
 import type { Kind } from "../requests/wish";
 import { PlacePad } from "./place_pad";
 import { type Asked, nextStep, type Step } from "./steps";
+import { t } from "../words/words";
 
 interface StepFormProps {
   asked: Asked;
@@ -40,15 +41,15 @@ export function StepForm({ asked, places, here, answered }: StepFormProps) {
 function questionOf(step: Step, kind: Kind): string {
   switch (step) {
     case "what":
-      return "What am I to bring?";
+      return t("What am I to bring?");
     case "message":
-      return "What am I to tell?";
+      return t("What am I to tell?");
     case "origin":
-      return "From where?";
+      return t("From where?");
     case "destination":
-      return "To where?";
+      return t("To where?");
     case "place":
-      return kind === "deliver_message" ? "Where am I to tell it?" : "Where am I to come?";
+      return kind === "deliver_message" ? t("Where am I to tell it?") : t("Where am I to come?");
   }
 }
 
@@ -67,10 +68,10 @@ function TextAnswer({ step, answer }: { step: "what" | "message"; answer: (text:
     >
       {step === "what" && (
         <button class="button touch-button" type="button" onClick={() => answer("this")}>
-          This, which I have here
+          {t("This, which I have here")}
         </button>
       )}
-      <label for={id}>{step === "what" ? "Or something else, such as “the mail”" : "The message, as it is to be told"}</label>
+      <label for={id}>{step === "what" ? t("Or something else, such as “the mail”") : t("The message, as it is to be told")}</label>
       <input
         id={id}
         class="input"
@@ -80,7 +81,7 @@ function TextAnswer({ step, answer }: { step: "what" | "message"; answer: (text:
         onInput={(event) => setText(event.currentTarget.value)}
       />
       <button class="button touch-button primary" disabled={text.trim() === ""}>
-        Go on
+        {t("Go on")}
       </button>
     </form>
   );

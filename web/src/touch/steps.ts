@@ -1,6 +1,7 @@
 // What is asked one after the other at a robot's touch screen, and the wish that comes of it.
 import { said } from "../requests/places";
 import { type Kind, NO_WISH, type Wish } from "../requests/wish";
+import { t } from "../words/words";
 
 export type Step = "what" | "message" | "origin" | "destination" | "place";
 
@@ -18,7 +19,7 @@ const STEPS: Readonly<Record<Kind, readonly Step[]>> = {
 };
 
 /** Whom robots call somebody who has not said their name. */
-export const WHOEVER_ASKED = "whoever asked";
+export const WHOEVER_ASKED = t("whoever asked");
 
 /** What is to be asked next; null where all is known. */
 export function nextStep({ kind, answers }: Asked): Step | null {
@@ -34,19 +35,21 @@ export function wishOf({ kind, answers }: Asked, here: string | null): Wish {
 
 /** The sentence that asks whether a wish is right. */
 export function readBackOf(wish: Wish): string {
-  return `I am to ${deedOf(wish)}. Is that right?`;
+  return t("I am to {wish}. Is that right?", { wish: deedOf(wish) });
 }
 
 function deedOf({ kind, what, message, person, origin, destination, place }: Wish): string {
-  const way = `from ${said(origin)} to ${said(destination)}`;
+  const way = t("from {origin} to {destination}", { origin: said(origin), destination: said(destination) });
   switch (kind) {
     case "transport":
-      return `bring ${what} ${way}`;
+      return t("bring {what} {way}", { what, way });
     case "escort":
-      return person === WHOEVER_ASKED ? `show you the way ${way}` : `show ${person} the way ${way}`;
+      return person === WHOEVER_ASKED
+        ? t("show you the way {way}", { way })
+        : t("show {person} the way {way}", { person, way });
     case "deliver_message":
-      return `tell ${said(place)} that “${message}”`;
+      return t("tell {place} that “{message}”", { place: said(place), message });
     case "go_to_room":
-      return `come to ${said(place)}`;
+      return t("come to {place}", { place: said(place) });
   }
 }

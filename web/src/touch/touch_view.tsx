@@ -21,13 +21,14 @@ import { type Asked, nextStep, readBackOf, wishOf } from "./steps";
 import { useIdle } from "./use_idle";
 import { useRobot } from "./use_robot";
 import "../requests/requests.css";
+import { t } from "../words/words";
 import "./touch.css";
 
 const DEEDS: readonly (readonly [Kind, string])[] = [
-  ["transport", "Bring something somewhere"],
-  ["deliver_message", "Tell somebody something"],
-  ["escort", "Show me the way"],
-  ["go_to_room", "Come to a room"],
+  ["transport", t("Bring something somewhere")],
+  ["deliver_message", t("Tell somebody something")],
+  ["escort", t("Show me the way")],
+  ["go_to_room", t("Come to a room")],
 ];
 const IDLE_MS = 90_000;
 
@@ -38,19 +39,19 @@ export function TouchView({ robot: name }: { robot: string }) {
     <section class="page touch">
       <div class="touch-head">
         <h1>{robotName(name)}</h1>
-        {robot?.here != null && <p class="quiet">I am at {said(robot.here)}.</p>}
+        {robot?.here != null && <p class="quiet">{t("I am at {here}.", { here: said(robot.here) })}</p>}
         <Connection />
         {voices && (
           <button class="button" type="button" aria-pressed={soundOn.value} onClick={() => (soundOn.value = !soundOn.value)}>
-            Read aloud
+            {t("Read aloud")}
           </button>
         )}
       </div>
       <p class="mistake" role="alert">
         {failure}
       </p>
-      {fleets.value !== null && site === null && <p>No robot called {name} takes requests here.</p>}
-      {!may("helper") && <p class="quiet">{whyNot("Asking for something", "helper")}</p>}
+      {fleets.value !== null && site === null && <p>{t("No robot called {name} takes requests here.", { name })}</p>}
+      {!may("helper") && <p class="quiet">{whyNot(t("Asking for something"), "helper")}</p>}
       {may("helper") && site !== null && robot !== null && <AtRobot site={site} robot={robot} />}
     </section>
   );
@@ -75,7 +76,7 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
   const goesOn = booked !== null && !isOver(booked);
   useIdle((asked !== null || confirmed !== null) && !goesOn, IDLE_MS, back);
   useSaidAloud(heard(asking, confirmed?.readBack ?? ""));
-  if (fleet === null) return <p class="quiet">Loading …</p>;
+  if (fleet === null) return <p class="quiet">{t("Loading …")}</p>;
   const clock = { now: fleet.now_s, speed: site.speed };
   const answer = (next: Asked) => {
     setAsked(next);
@@ -110,7 +111,7 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
       {booked !== null && <Followed request={booked} clock={clock} changed={again} />}
       {!isStart && !(confirmed !== null && asking.phase === "nothing") && (
         <button class="button touch-button" type="button" onClick={back}>
-          {asking.phase === "booked" ? "Ask for something else" : "Start over"}
+          {asking.phase === "booked" ? t("Ask for something else") : t("Start over")}
         </button>
       )}
     </>
@@ -121,7 +122,7 @@ function Start({ robot, choose }: { robot: AskedRobotView; choose: (kind: Kind) 
   const offered = DEEDS.filter(([kind]) => robot.kinds.includes(kind) && (kind !== "escort" || robot.here !== null));
   return (
     <>
-      <h2>What may I do for you?</h2>
+      <h2>{t("What may I do for you?")}</h2>
       <div class="touch-deeds">
         {offered.map(([kind, name]) => (
           <button key={kind} class="button touch-button" type="button" onClick={() => choose(kind)}>
@@ -134,11 +135,11 @@ function Start({ robot, choose }: { robot: AskedRobotView; choose: (kind: Kind) 
 }
 
 function heard(asking: Asking, readBack: string): string {
-  if (asking.phase === "booked") return `All right. ${wanted(asking.request, said)}.`;
+  if (asking.phase === "booked") return t("All right. {request}.", { request: wanted(asking.request, said) });
   return asking.phase === "refused" ? refusedInShort(asking.by) : readBack;
 }
 
-/** A sentence about a place that is there. */
+/** A sentence in English, as it is understood, about a place that is there. */
 function exampleFor(places: readonly string[], here: string | null): string {
   const other = places.find((place) => place !== here);
   return other === undefined ? "come here" : `bring this to ${said(other)}`;

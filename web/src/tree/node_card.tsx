@@ -3,6 +3,7 @@ import type { PlacedNode } from "./layout";
 import { BreakpointSign, KindSign, StateSign } from "./signs";
 import type { NodeKind, TreeNode } from "./tree_node";
 import { KIND_RULES, KIND_WORDS, plain, shortened, stateWord, withoutRun } from "./words";
+import { decimal, t } from "../words/words";
 
 const NAME_PX = 7.6;
 const SMALL_PX = 6.6;
@@ -90,7 +91,7 @@ function LeafText({ node, width, compact }: { node: TreeNode; width: number; com
 
 function asideOf(node: TreeNode): string | null {
   if (node.owner !== null) return shortened(withoutRun(node.owner), 12);
-  return node.attempts > 0 ? `${node.attempts} failed` : null;
+  return node.attempts > 0 ? t("{count} failed", { count: node.attempts }) : null;
 }
 
 type GoalKind = Exclude<NodeKind, "behavior">;
@@ -152,5 +153,5 @@ function Meter(props: { kind: string; sign: string; value: number; full: number;
 function figure(value: number): string {
   if (value === 0) return "0";
   if (value < 0.01) return "<.01";
-  return value < 100 ? value.toFixed(2) : value.toFixed(0);
+  return decimal(value, value < 100 ? 2 : 0);
 }

@@ -9,6 +9,8 @@ import { WrongSign } from "./signs";
 import { inSight, useIntoSight, useSight } from "./sight";
 import { type GoTo, useWalk } from "./walk";
 import { described } from "./words";
+import { t } from "../words/words";
+import { locale } from "../words/language";
 import "./tree.css";
 
 const SHOWN_AT_FIRST = 120;
@@ -44,7 +46,7 @@ export interface TreeDrawingProps {
 }
 
 export function TreeDrawing(props: TreeDrawingProps) {
-  const { nodes, label = "Task tree", selected = null, focus = null, onSelect, compact = false } = props;
+  const { nodes, label = t("Task tree"), selected = null, focus = null, onSelect, compact = false } = props;
   const { selectsOnFocus = false, goTo = null, problems = NO_PROBLEMS, onKey, over } = props;
   const scroll = useRef<HTMLDivElement>(null);
   const size = useSize(scroll);
@@ -129,14 +131,12 @@ function pathOf(target: EventTarget | null): string | null {
 function ZoomButtons({ zoom, setZoom }: { zoom: number; setZoom: (zoom: number) => void }) {
   const change = (factor: number) => setZoom(Math.min(MAX_ZOOM, Math.max(MIN_ZOOM, zoom * factor)));
   return (
-    <div class="tree-zoom" role="group" aria-label="Size of the drawing">
-      <button type="button" aria-label="Smaller" disabled={zoom <= MIN_ZOOM} onClick={() => change(1 / ZOOM_STEP)}>
+    <div class="tree-zoom" role="group" aria-label={t("Size of the drawing")}>
+      <button type="button" aria-label={t("Smaller")} disabled={zoom <= MIN_ZOOM} onClick={() => change(1 / ZOOM_STEP)}>
         −
       </button>
-      <button type="button" aria-label="Fit the panel" onClick={() => setZoom(1)}>
-        Fit
-      </button>
-      <button type="button" aria-label="Larger" disabled={zoom >= MAX_ZOOM} onClick={() => change(ZOOM_STEP)}>
+      <button type="button" aria-label={t("Fit the panel")} onClick={() => setZoom(1)}>{t("Fit")}</button>
+      <button type="button" aria-label={t("Larger")} disabled={zoom >= MAX_ZOOM} onClick={() => change(ZOOM_STEP)}>
         +
       </button>
     </div>
@@ -147,7 +147,7 @@ function ZoomButtons({ zoom, setZoom }: { zoom: number; setZoom: (zoom: number) 
 function LeftOut({ placed }: { placed: PlacedNode }) {
   return (
     <text class="left-out" aria-hidden="true" x={placed.width + 24} y={placed.height - 4}>
-      {`${placed.leftOut.toLocaleString("en")} more not drawn`}
+      {t("{count} more not drawn", { count: placed.leftOut.toLocaleString(locale) })}
     </text>
   );
 }

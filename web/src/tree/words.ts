@@ -1,43 +1,44 @@
 // The words for what a task tree shows.
 import type { NodeKind, NodeState, TreeNode } from "./tree_node";
+import { decimal, t } from "../words/words";
 
 export const KIND_WORDS: Readonly<Record<NodeKind, string>> = {
   then: "THEN",
   and: "AND",
   or: "OR",
-  behavior: "behavior",
+  behavior: t("behavior"),
 };
 
 /** What has to be done of the children. */
 export const KIND_RULES: Readonly<Record<Exclude<NodeKind, "behavior">, string>> = {
-  then: "all, in this order",
-  and: "all, in any order",
-  or: "exactly one",
+  then: t("all, in this order"),
+  and: t("all, in any order"),
+  or: t("exactly one"),
 };
 
 export const KIND_MEANINGS: Readonly<Record<NodeKind, string>> = {
   then: `THEN, ${KIND_RULES.then}`,
   and: `AND, ${KIND_RULES.and}`,
   or: `OR, ${KIND_RULES.or}`,
-  behavior: "behavior",
+  behavior: t("behavior"),
 };
 
 export const STATE_WORDS: Readonly<Record<NodeState, string>> = {
-  waiting: "waiting",
-  eligible: "eligible",
-  active: "active",
-  in_dialogue: "in dialogue",
-  done: "done",
-  abandoned: "abandoned",
-  failed: "failed",
-  left: "not done",
+  waiting: t("waiting"),
+  eligible: t("eligible"),
+  active: t("active"),
+  in_dialogue: t("in dialogue"),
+  done: t("done"),
+  abandoned: t("abandoned"),
+  failed: t("failed"),
+  left: t("not done|as a node’s state"),
 };
 
 /** The word under a node: who does what is active, where that is a person. */
 export function stateWord(node: TreeNode, state: NodeState): string {
-  if (node.steered?.waits === true) return "waits";
-  if (node.steered?.next === true && state === "eligible") return "next";
-  return node.byPerson ? "a person" : STATE_WORDS[state];
+  if (node.steered?.waits === true) return t("waits");
+  if (node.steered?.next === true && state === "eligible") return t("next|as a node’s state");
+  return node.byPerson ? t("a person") : STATE_WORDS[state];
 }
 
 /** A name as people write it. */
@@ -62,15 +63,16 @@ export function described(node: TreeNode, hidden: number, leftOut: number, probl
   const parts = [plain(node.name), KIND_MEANINGS[node.kind]];
   if (node.behavior !== null) parts[1] = plain(node.behavior);
   if (node.state !== null) parts.push(STATE_WORDS[node.state]);
-  if (node.owner !== null) parts.push(`${node.byPerson ? "being done" : "held"} by ${node.owner}`);
-  if (node.steered?.breakpoint === true) parts.push("a breakpoint before it");
-  if (node.steered?.waits === true) parts.push("waits to be let go");
-  if (node.steered?.next === true) parts.push("asked for next");
-  if (node.level !== null) parts.push(`level ${node.level.toFixed(2)}`);
-  if (node.potential !== null) parts.push(`potential ${node.potential.toFixed(2)}`);
-  if (node.attempts > 0) parts.push(`${node.attempts} failed`);
-  if (hidden > 0) parts.push(`${hidden} nodes under it are folded away`);
-  if (leftOut > 0) parts.push(`${leftOut} of its children are not drawn`);
+  if (node.owner !== null)
+    parts.push(node.byPerson ? t("being done by {owner}", { owner: node.owner }) : t("held by {owner}", { owner: node.owner }));
+  if (node.steered?.breakpoint === true) parts.push(t("a breakpoint before it"));
+  if (node.steered?.waits === true) parts.push(t("waits to be let go"));
+  if (node.steered?.next === true) parts.push(t("asked for next"));
+  if (node.level !== null) parts.push(t("level {level}", { level: decimal(node.level, 2) }));
+  if (node.potential !== null) parts.push(t("potential {potential}", { potential: decimal(node.potential, 2) }));
+  if (node.attempts > 0) parts.push(t("{count} failed", { count: node.attempts }));
+  if (hidden > 0) parts.push(t("{count} nodes under it are folded away", { count: hidden }));
+  if (leftOut > 0) parts.push(t("{count} of its children are not drawn", { count: leftOut }));
   const told = parts.join(", ");
-  return problem === undefined ? told : `${told}. Mistake: ${problem}`;
+  return problem === undefined ? told : t("{told}. Mistake: {problem}", { told, problem });
 }

@@ -1,6 +1,7 @@
 // Where a task file is let in: dropped anywhere on the library, or chosen with a button.
 import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
+import { t } from "../words/words";
 
 interface DropZoneProps {
   onFile: (file: File) => void;
@@ -12,7 +13,7 @@ export function DropZone({ onFile, onSeveral, children }: DropZoneProps) {
   // Entering a child comes before leaving its parent, so they are counted.
   const [depth, setDepth] = useState(0);
   const enter = (event: DragEvent) => {
-    if (!event.dataTransfer?.types.includes("Files")) return;
+    if (!event.dataTransfer?.types.includes(t("Files"))) return;
     event.preventDefault();
     setDepth((before) => before + 1);
   };
@@ -32,7 +33,7 @@ export function DropZone({ onFile, onSeveral, children }: DropZoneProps) {
       onDrop={drop}
     >
       {children}
-      {depth > 0 && <p class="drop-here">Drop the task file here</p>}
+      {depth > 0 && <p class="drop-here">{t("Drop the task file here")}</p>}
     </div>
   );
 }
@@ -48,7 +49,7 @@ export function FileButton({ onFile }: { onFile: (file: File) => void }) {
   };
   return (
     <label class="button file-button">
-      Upload a file
+      {t("Upload a file")}
       <input class="unseen" type="file" accept=".yaml,.yml,.json" onChange={choose} />
     </label>
   );

@@ -8,6 +8,7 @@ import * as rest from "../wire/rest";
 import type { DocumentView } from "../wire/types";
 import { DefinitionDrawing } from "./definition_drawing";
 import { dropDraft } from "../document/draft";
+import { t, tn } from "../words/words";
 
 export function TreeDetails({ tree }: { tree: string }) {
   const [found, setFound] = useState<DocumentView | null>(null);
@@ -16,7 +17,7 @@ export function TreeDetails({ tree }: { tree: string }) {
   useEffect(() => {
     rest.tree(tree).then(setFound, (error: Error) => setMistake(error.message));
   }, [tree, connected]);
-  if (found === null) return <p class={mistake === "" ? "quiet" : "mistake"}>{mistake || "Loading …"}</p>;
+  if (found === null) return <p class={mistake === "" ? "quiet" : "mistake"}>{mistake || t("Loading …")}</p>;
   const { name, description, scene, nodes } = described(found);
   return (
     <article class="panel tree-details" aria-labelledby="tree-name">
@@ -26,21 +27,21 @@ export function TreeDetails({ tree }: { tree: string }) {
       </div>
       {description !== null && <p>{description}</p>}
       <p class="small quiet">
-        {nodes === 1 ? "1 node" : `${nodes} nodes`}
+        {tn("{count} node", "{count} nodes", { count: nodes })}
         {scene !== null && (
           <>
-            {" · scene "}
+            {t("· scene")}
             {may("operator") ? <a href={`/edit_scene/${scene}`}>{scene}</a> : scene}
           </>
         )}
-        {found.built_in && <> · built in: copy it to change it</>}
+        {found.built_in && <> {t("· built in: copy it to change it")}</>}
       </p>
       <div class="tree-frame">
-        <DefinitionDrawing definition={found.definition} label={`Drawing of ${name}`} />
+        <DefinitionDrawing definition={found.definition} label={t("Drawing of {name}", { name })} />
       </div>
       <details>
-        <summary>Its file</summary>
-        <pre class="tree-file" tabIndex={0} aria-label={`The file of ${name}`}>
+        <summary>{t("Its file")}</summary>
+        <pre class="tree-file" tabIndex={0} aria-label={t("The file of {name}", { name })}>
           {found.text}
         </pre>
       </details>
@@ -66,14 +67,14 @@ function TreeActions({ tree }: { tree: DocumentView }) {
     <div class="page-actions">
       {!tree.built_in && (
         <button class="button danger" type="button" onClick={() => setAsking(true)}>
-          Delete
+          {t("Delete")}
         </button>
       )}
       <a class="button" href={`/edit/${tree.name}`}>
-        {tree.built_in ? "Copy and edit" : "Edit"}
+        {tree.built_in ? t("Copy and edit") : t("Edit")}
       </a>
       <a class="button primary" href={`/start/${tree.name}`}>
-        Start a run
+        {t("Start a run")}
       </a>
       {mistake !== "" && (
         <p class="mistake" role="alert">
@@ -82,13 +83,13 @@ function TreeActions({ tree }: { tree: DocumentView }) {
       )}
       {asking && (
         <Confirm
-          title={`Delete '${tree.name}'?`}
-          confirm="Delete"
-          cancel="Keep it"
+          title={t("Delete '{name}'?", { name: tree.name })}
+          confirm={t("Delete")}
+          cancel={t("Keep it")}
           onConfirm={() => void remove()}
           onCancel={() => setAsking(false)}
         >
-          The task tree goes from the library for everybody. Runs that were started with it go on.
+          {t("The task tree goes from the library for everybody. Runs that were started with it go on.")}
         </Confirm>
       )}
     </div>

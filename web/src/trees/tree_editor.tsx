@@ -4,13 +4,14 @@ import type { DocumentKind } from "../document/document_kind";
 import * as rest from "../wire/rest";
 import { TreeSide } from "./editing/tree_side";
 import { NEW_TREE } from "./tree_text";
+import { t } from "../words/words";
 import "./trees.css";
 
 const TREE: DocumentKind = {
-  said: "task tree",
+  said: t("task tree"),
   newName: "my_tree",
   newText: NEW_TREE,
-  textLabel: "The file of the task tree",
+  textLabel: t("The file of the task tree"),
   draftOf: (name) => name,
   addressOf: (name) => (name === null ? "/trees" : `/trees/${name}`),
   list: rest.trees,

@@ -7,6 +7,7 @@ import type { DocumentSummary } from "../wire/types";
 import { DropZone, FileButton } from "./drop_zone";
 import { TreeDetails } from "./tree_details";
 import { takeFile } from "./upload";
+import { t } from "../words/words";
 import "./trees.css";
 
 export function TreesView({ tree }: { tree: string | null }) {
@@ -22,19 +23,19 @@ export function TreesView({ tree }: { tree: string | null }) {
   };
   const chosen = tree ?? trees?.[0]?.name ?? null;
   return (
-    <DropZone onFile={take} onSeveral={() => setMistake("One task file at a time, please.")}>
+    <DropZone onFile={take} onSeveral={() => setMistake(t("One task file at a time, please."))}>
       <section class="page">
         <div class="page-head">
-          <h1>Task trees</h1>
+          <h1>{t("Task trees")}</h1>
           <div class="page-actions">
             <a class="button" href="/scenes">
-              Scenes
+              {t("Scenes")}
             </a>
             {may("operator") && (
               <>
                 <FileButton onFile={take} />
                 <a class="button" href="/edit">
-                  Write a new one
+                  {t("Write a new one")}
                 </a>
               </>
             )}
@@ -44,10 +45,10 @@ export function TreesView({ tree }: { tree: string | null }) {
           {mistake}
         </p>
         <div class="library">
-          <nav class="library-list" aria-label="Task trees">
+          <nav class="library-list" aria-label={t("Task trees")}>
             <TreeList trees={trees} chosen={chosen} />
             {may("operator") && (
-              <p class="small quiet library-hint">Drop a task file (YAML or JSON) anywhere here to upload it.</p>
+              <p class="small quiet library-hint">{t("Drop a task file (YAML or JSON) anywhere here to upload it.")}</p>
             )}
           </nav>
           {chosen !== null && <TreeDetails key={chosen} tree={chosen} />}
@@ -58,14 +59,14 @@ export function TreesView({ tree }: { tree: string | null }) {
 }
 
 function TreeList({ trees, chosen }: { trees: readonly DocumentSummary[] | null; chosen: string | null }) {
-  if (trees === null) return <p class="quiet">Loading …</p>;
+  if (trees === null) return <p class="quiet">{t("Loading …")}</p>;
   return (
     <ul>
       {trees.map(({ name, built_in }) => (
         <li key={name}>
           <a class="library-tree" href={`/trees/${name}`} aria-current={name === chosen ? "page" : undefined}>
             <span class="library-name">{name}</span>
-            {built_in && <span class="badge">built in</span>}
+            {built_in && <span class="badge">{t("built in")}</span>}
           </a>
         </li>
       ))}

@@ -4,6 +4,7 @@ import * as rest from "../wire/rest";
 import type { DocumentSummary } from "../wire/types";
 import { keepDraft } from "../document/draft";
 import { freeName, nameIn, nameOfFile, renamed } from "./tree_text";
+import { t, tn } from "../words/words";
 
 const LARGEST_BYTES = 8 * 1024 * 1024;
 
@@ -20,8 +21,8 @@ export async function takeFile(file: File, trees: readonly DocumentSummary[]): P
   const check = await rest.checkTree(text, new AbortController().signal);
   const name = check.name ?? nameIn(text) ?? nameOfFile(file.name);
   if (check.errors.length > 0) {
-    const count = check.errors.length === 1 ? "a mistake" : `${check.errors.length} mistakes`;
-    edit(name, text, `${file.name} has ${count} and is not saved yet. Put it right here.`);
+    const count = check.errors.length === 1 ? t("a mistake") : tn("{count} mistake", "{count} mistakes", { count: check.errors.length });
+    edit(name, text, t("{name} has {count} and is not saved yet. Put it right here.", { name: file.name, count }));
     return;
   }
   if (trees.some((each) => each.name === name)) {
@@ -29,7 +30,11 @@ export async function takeFile(file: File, trees: readonly DocumentSummary[]): P
     edit(
       other,
       renamed(text, other),
-      `There is a tree '${name}' already, so ${file.name} is called '${other}' here. It is not saved yet.`,
+      t("There is a tree '{name}' already, so {file} is called '{other}' here. It is not saved yet.", {
+        name,
+        file: file.name,
+        other,
+      }),
     );
     return;
   }
@@ -44,11 +49,11 @@ function edit(name: string, text: string, note: string): void {
 
 async function textOf(file: File): Promise<string> {
   if (file.size > LARGEST_BYTES) {
-    throw new NotATaskFile(`${file.name} is larger than 8 MiB; a task file may not be.`);
+    throw new NotATaskFile(t("{name} is larger than 8 MiB; a task file may not be.", { name: file.name }));
   }
   try {
     return new TextDecoder("utf-8", { fatal: true }).decode(await file.arrayBuffer());
   } catch {
-    throw new NotATaskFile(`${file.name} is no text in UTF-8; a task file is YAML or JSON.`);
+    throw new NotATaskFile(t("{name} is no text in UTF-8; a task file is YAML or JSON.", { name: file.name }));
   }
 }

@@ -44,6 +44,7 @@ import type {
   WorldView,
 } from "./types";
 import type { Told } from "./told";
+import { t } from "../words/words";
 
 /** The service refused: what it said in its problem document (RFC 9457). */
 export class Refusal extends Error {
@@ -64,7 +65,7 @@ export class Refusal extends Error {
 /** The service could not be reached at all. */
 export class Unreachable extends Error {
   constructor() {
-    super("The service cannot be reached.");
+    super(t("The service cannot be reached."));
   }
 }
 

@@ -3,6 +3,7 @@ import { isMap, isSeq, type Pair, type YAMLMap, type YAMLSeq } from "yaml";
 import { CannotEdit, commentsOf, endOf, isEmptyList, isJson, keyEnd, readYaml, startOf, type YamlSource } from "./source";
 import { beginsLine, columnOf, lineEnd, lineStart, shifted, type Splice } from "./splice";
 import { inLine, itemInLines } from "./values";
+import { t } from "../words/words";
 
 /** The list behind a key of a mapping. */
 export interface Owner {
@@ -24,7 +25,7 @@ const COMMENT = /^ *#/;
 
 /** Raises `CannotEdit` where it is none. */
 export function listOf({ pair }: Owner): YAMLSeq {
-  if (!isSeq(pair.value)) throw new CannotEdit("What is to be changed is no list.");
+  if (!isSeq(pair.value)) throw new CannotEdit(t("What is to be changed is no list."));
   return pair.value;
 }
 
@@ -33,7 +34,7 @@ export function itemLines({ text, ...source }: YamlSource, list: YAMLSeq, index:
   const token = list.srcToken;
   const starts = token?.type === "block-seq" ? token.items[index]?.start : undefined;
   const dash = starts?.find(({ type }) => type === "seq-item-ind");
-  if (dash === undefined) throw new CannotEdit("This item of a list cannot be found in the text.");
+  if (dash === undefined) throw new CannotEdit(t("This item of a list cannot be found in the text."));
   const column = columnOf(text, dash.offset);
   let from = lineStart(text, dash.offset);
   while (from > 0) {
@@ -93,7 +94,7 @@ function removedInBrackets(source: YamlSource, list: YAMLSeq, index: number): Sp
   if (!text.slice(...gap).includes("#")) return [behind ? { ...own, to: gap[1] } : { ...own, from: gap[0] }];
   const token = list.srcToken?.type === "flow-collection" ? list.srcToken.items[second] : undefined;
   const comma = token?.start.find(({ type }) => type === "comma");
-  if (comma === undefined) throw new CannotEdit("The comma between two items of a list cannot be found.");
+  if (comma === undefined) throw new CannotEdit(t("The comma between two items of a list cannot be found."));
   return [own, { from: comma.offset, to: comma.offset + 1, insert: "" }];
 }
 
@@ -160,10 +161,10 @@ export function flowOf(item: Item, json: boolean): string {
   if ("flow" in item) return item.flow;
   if ("value" in item) return inLine(item.value, json);
   if (commentsOf(item.lines).length > 0) {
-    throw new CannotEdit("What has comments cannot go into a list in brackets: write that list in lines first.");
+    throw new CannotEdit(t("What has comments cannot go into a list in brackets: write that list in lines first."));
   }
   const read = readYaml(item.lines)?.doc.contents;
   const only = isSeq(read) ? read.items[0] : null;
-  if (!isMap(only)) throw new CannotEdit("This item of a list cannot be written in brackets.");
+  if (!isMap(only)) throw new CannotEdit(t("This item of a list cannot be written in brackets."));
   return inLine(only.toJSON(), json);
 }

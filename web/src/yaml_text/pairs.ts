@@ -4,6 +4,7 @@ import { linesAt } from "./items";
 import { CannotEdit, endOf, isJson, keyEnd, pairOf, startOf, type YamlSource } from "./source";
 import { columnOf, lineEnd, lineStart, type Splice } from "./splice";
 import { inLine } from "./values";
+import { t } from "../words/words";
 
 /** Have a key say something else, or say something at all; a new one stands last, or `first`. */
 export function pairSet(source: YamlSource, map: YAMLMap, key: string, value: unknown, first = false): Splice[] {
@@ -44,7 +45,7 @@ export function pairRemoved(source: YamlSource, map: YAMLMap, key: string): Spli
   const pair = map.items[index];
   if (pair === undefined) return [];
   const [from, to] = [startOf(pair.key), endOf(source, pair)];
-  if (map.items.length === 1) throw new CannotEdit(`Nothing would be left without '${key}'.`);
+  if (map.items.length === 1) throw new CannotEdit(t("Nothing would be left without '{key}'.", { key }));
   return map.flow === true ? removedInBraces(source, map, index, from, to) : removedLines(source, map, index, from, to);
 }
 
@@ -56,7 +57,7 @@ function removedInBraces(source: YamlSource, map: YAMLMap, index: number, from: 
       ? { from: endOf(source, before), to, insert: "" }
       : { from, to: startOf(behind.key), insert: "" };
   if (source.text.slice(splice.from, from).includes("#") || source.text.slice(to, splice.to).includes("#")) {
-    throw new CannotEdit("A comment stands beside the comma here: change this in the text.");
+    throw new CannotEdit(t("A comment stands beside the comma here: change this in the text."));
   }
   return [splice];
 }

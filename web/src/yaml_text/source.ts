@@ -14,6 +14,7 @@ import {
   type YAMLMap,
   type YAMLSeq,
 } from "yaml";
+import { t } from "../words/words";
 
 export interface YamlSource {
   text: string;
@@ -37,7 +38,7 @@ export function plainOf({ doc }: YamlSource, node: unknown): unknown {
 /** Where a node begins; what stands before it, as an anchor, is not part of it. */
 export function startOf(node: unknown): number {
   const range = (node as ParsedNode | null)?.range;
-  if (range === null || range === undefined) throw new CannotEdit("This part of the text cannot be found.");
+  if (range === null || range === undefined) throw new CannotEdit(t("This part of the text cannot be found."));
   return range[0];
 }
 

@@ -2,6 +2,7 @@
 import { plain, withoutRun } from "../../tree/words";
 import type { Told } from "../../wire/told";
 import { type Point, type Series, unitOf } from "./series";
+import { t } from "../../words/words";
 
 /** What says when and which, or is a definition and no measurement. */
 const LEFT_OUT: ReadonlySet<string> = new Set(["seq", "time", "wall_time", "run", "lines", "tree", "scene", "script", "options", "seed", "speed"]);
@@ -40,7 +41,7 @@ export function createEventNumbers(): EventNumbers {
     }
     const [last, unit] = unitOf(AXES.includes(field) && path.length > 1 ? (path.at(-2) as string) : field);
     const words = [...path.slice(0, -1), field].map((word) => plain(unitOf(word)[0] || last));
-    const of = robot === null ? "" : ` of ${withoutRun(robot)}`;
+    const of = robot === null ? "" : ` ${t("of {robot}", { robot: withoutRun(robot) })}`;
     found.set(id, { id, name: `${plain(event.type)}: ${words.join(", ")}${of}`, unit, points: [point] });
   };
 

@@ -6,6 +6,7 @@ import "uplot/dist/uPlot.min.css";
 import type { Moment } from "../moment";
 import { clock } from "../run_words";
 import { countUntil, type Point, type Series, told } from "./series";
+import { t } from "../../words/words";
 
 const HEIGHT_PX = 150;
 const AXIS_PX = 64;
@@ -72,18 +73,18 @@ export function PlotDrawing({ series, end, moment }: PlotDrawingProps) {
   return (
     <>
       <p class="small plot-value">
-        {shown === undefined ? `nothing until ${clock(moment.time.value)}` : `${told(shown.value, unit)} since ${clock(shown.time)}`}
+        {shown === undefined ? t("nothing until {time}", { time: clock(moment.time.value) }) : t("{shown} since {time}", { shown: told(shown.value, unit), time: clock(shown.time) })}
       </p>
       <div
         class="plot"
         ref={host}
         role="slider"
         tabIndex={0}
-        aria-label={`${name}; the arrow keys go from value to value`}
+        aria-label={t("{name}; the arrow keys go from value to value", { name })}
         aria-valuemin={1}
         aria-valuemax={Math.max(points.length, 1)}
         aria-valuenow={Math.max(at + 1, 1)}
-        aria-valuetext={shown === undefined ? "no value yet" : `${told(shown.value, unit)} at ${clock(shown.time)}`}
+        aria-valuetext={shown === undefined ? t("no value yet") : t("{shown} at {time}", { shown: told(shown.value, unit), time: clock(shown.time) })}
         onKeyDown={walk}
       />
     </>

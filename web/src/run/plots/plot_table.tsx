@@ -3,6 +3,7 @@ import { useState } from "preact/hooks";
 import type { Moment } from "../moment";
 import { clock } from "../run_words";
 import { countUntil, type Series, told } from "./series";
+import { t } from "../../words/words";
 
 const AT_ONCE = 100;
 
@@ -12,12 +13,12 @@ export function PlotTable({ series, moment }: { series: Series; moment: Moment }
   const current = countUntil(points, moment.time.value) - 1;
   const left = points.length - most;
   return (
-    <div class="plot-table" role="region" aria-label={`${name} as a table`} tabIndex={0}>
+    <div class="plot-table" role="region" aria-label={t("{name} as a table", { name })} tabIndex={0}>
       <table>
         <thead>
           <tr>
-            <th scope="col">Time</th>
-            <th scope="col">Value</th>
+            <th scope="col">{t("Time")}</th>
+            <th scope="col">{t("Value")}</th>
           </tr>
         </thead>
         <tbody>
@@ -35,7 +36,7 @@ export function PlotTable({ series, moment }: { series: Series; moment: Moment }
       </table>
       {left > 0 && (
         <button type="button" class="small-button" onClick={() => setMost(most + AT_ONCE)}>
-          Show {Math.min(AT_ONCE, left)} more
+          {t("Show {count} more", { count: Math.min(AT_ONCE, left) })}
         </button>
       )}
     </div>

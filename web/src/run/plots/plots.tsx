@@ -8,6 +8,7 @@ import { PlotDrawing } from "./plot_drawing";
 import { PlotTable } from "./plot_table";
 import { openPoseNumbers, type PoseNumbers, seriesOf } from "./pose_numbers";
 import type { Series } from "./series";
+import { t } from "../../words/words";
 import "./plots.css";
 
 /** What is recorded meanwhile is read so often, in seconds of the run's clock. */
@@ -33,11 +34,11 @@ export function Plots({ run, history, version, end, moment }: PlotsProps) {
   return (
     <div class="plots" id="run-plots">
       <div class="field">
-        <label for="plot-number">Number to plot</label>
+        <label for="plot-number">{t("Number to plot")}</label>
         <select id="plot-number" value="" onChange={(event) => choose(event.currentTarget.value)}>
-          <option value="">{known.length === 0 ? "There are no numbers" : "Choose one …"}</option>
-          <Choices label="In events" names={ofEvents} chosen={chosen} />
-          <Choices label="In recorded poses" names={poses.numbers?.numbers ?? []} chosen={chosen} />
+          <option value="">{known.length === 0 ? t("There are no numbers") : t("Choose one …")}</option>
+          <Choices label={t("In events")} names={ofEvents} chosen={chosen} />
+          <Choices label={t("In recorded poses")} names={poses.numbers?.numbers ?? []} chosen={chosen} />
         </select>
       </div>
       <p class="mistake small" role="status">
@@ -93,10 +94,8 @@ function Plot({ series, end, moment, onRemove }: PlotProps) {
     <section class="plot-panel" aria-label={series.name}>
       <div class="panel-bar">
         <h3>{series.name}</h3>
-        <button type="button" class="small-button" aria-pressed={asTable} onClick={() => setAsTable(!asTable)}>
-          As a table
-        </button>
-        <button type="button" class="small-button" aria-label={`Remove ${series.name}`} onClick={onRemove}>
+        <button type="button" class="small-button" aria-pressed={asTable} onClick={() => setAsTable(!asTable)}>{t("As a table")}</button>
+        <button type="button" class="small-button" aria-label={t("Remove {name}", { name: series.name })} onClick={onRemove}>
           ✕
         </button>
       </div>

@@ -4,6 +4,7 @@ import * as rest from "../../wire/rest";
 import type { Layout } from "../../wire/types";
 import { type ArmPose, decodeFrames, type Frame } from "../scene/decode";
 import type { Point, Series } from "./series";
+import { t } from "../../words/words";
 
 /** Frames are told by the millisecond in the address of the next ones. */
 const NEXT_S = 0.001;
@@ -28,7 +29,7 @@ export function numbersIn(layout: Layout): PoseNumber[] {
       of: (frame) => poseOf(frame)?.[index] ?? null,
     }));
   const held = (id: string, of: string, joints: readonly string[], armOf: (frame: Frame) => ArmPose | null): PoseNumber[] => [
-    { id: `${id}/opening`, name: `gripper${of}: opening`, unit: "m", of: (frame) => armOf(frame)?.opening ?? null },
+    { id: `${id}/opening`, name: t("gripper{of}: opening", { of }), unit: "m", of: (frame) => armOf(frame)?.opening ?? null },
     ...placed(`${id}/tool`, `tool${of}`, (frame) => armOf(frame)?.tool ?? null),
     ...joints.map((joint, index) => ({
       id: `${id}/joint/${joint}`,
@@ -37,14 +38,14 @@ export function numbersIn(layout: Layout): PoseNumber[] {
       of: (frame: Frame) => armOf(frame)?.joints[index] ?? null,
     })),
   ];
-  const of = (robot: string) => (layout.arms.length > 0 ? ` of ${withoutRun(robot)}` : "");
+  const of = (robot: string) => (layout.arms.length > 0 ? ` ${t("of {robot}", { robot: withoutRun(robot) })}` : "");
   return [
     ...held("poses", of(layout.robot), layout.joints, (frame) => frame),
     ...layout.arms.flatMap(({ robot, joints }, number) =>
       held(`poses/${robot}`, of(robot), joints, (frame) => frame.arms.find((each) => each.number === number) ?? null),
     ),
     ...layout.robots.flatMap((robot, index) =>
-      placed(`poses/base/${robot}`, `base of ${withoutRun(robot)}`, (frame) => {
+      placed(`poses/base/${robot}`, t("base of {robot}", { robot: withoutRun(robot) }), (frame) => {
         const base = frame.robots[index];
         return base === undefined || !Number.isFinite(base.age) ? null : base.pose;
       }),

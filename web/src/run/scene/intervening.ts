@@ -7,6 +7,7 @@ import { type Offer, sentenceOn, type Target } from "./interventions";
 import { armTarget } from "./object_list";
 import type { PoseSource } from "./pose_source";
 import type { Pointed } from "./scene_view";
+import { t } from "../../words/words";
 
 interface OpenMenu {
   readonly target: Target;
@@ -26,7 +27,9 @@ export function useIntervening(run: string, offered: boolean, source: PoseSource
     () =>
       onEvent((event) => {
         if (event.type !== "intervention" || event.run !== run) return;
-        setNote(event.ok ? sentenceOn(event.intervention) : `That could not be done: ${event.detail}.`);
+        setNote(
+          event.ok ? sentenceOn(event.intervention) : t("That could not be done: {detail}.", { detail: event.detail }),
+        );
       }),
     [run],
   );

@@ -1,5 +1,6 @@
 // What the simulated person can be told to do with an object or with the arm.
 import type { Intervention } from "../../wire/types";
+import { t } from "../../words/words";
 
 export interface ObjectTarget {
   readonly kind: "object";
@@ -34,51 +35,51 @@ export function offersFor(target: Target, places: readonly string[]): Offer[] {
 }
 
 const OFFERS_FOR_HEAD: Offer[] = [
-  { label: "Cover", hint: "Cover the head camera", act: { act: "cover" } },
-  { label: "Uncover", hint: "Clear the view of the head camera", act: { act: "uncover" } },
+  { label: t("Cover"), hint: t("Cover the head camera"), act: { act: "cover" } },
+  { label: t("Uncover"), hint: t("Clear the view of the head camera"), act: { act: "uncover" } },
 ];
 
 function offersForArm({ blocked }: ArmTarget): Offer[] {
   return blocked
-    ? [{ label: "Release", hint: "Get out of the robot’s way", act: { act: "release" } }]
-    : [{ label: "Block", hint: "Stand in the robot’s way", act: { act: "block" } }];
+    ? [{ label: t("Release"), hint: t("Get out of the robot’s way"), act: { act: "release" } }]
+    : [{ label: t("Block"), hint: t("Stand in the robot’s way"), act: { act: "block" } }];
 }
 
 function offersForObject({ name: object, held, gone }: ObjectTarget, places: readonly string[]): Offer[] {
   const offers: Offer[] = [];
-  if (!gone) offers.push({ label: "Steal", hint: "Take it away at once", act: { act: "steal", object } });
+  if (!gone) offers.push({ label: t("Steal"), hint: t("Take it away at once"), act: { act: "steal", object } });
   if (held) {
     const act: Intervention = { act: "steal", object, manner: "pull" };
-    offers.push({ label: "Pull out", hint: "Pull it out of the gripper and take it away", act });
+    offers.push({ label: t("Pull out"), hint: t("Pull it out of the gripper and take it away"), act });
   }
-  offers.push({ label: "Put back", hint: "To where it started", act: { act: "put_back", object } });
+  offers.push({ label: t("Put back"), hint: t("To where it started"), act: { act: "put_back", object } });
   if (places.includes(object)) {
-    offers.push({ label: "Place", hint: "At its final place", act: { act: "place", object, place: object } });
+    offers.push({ label: t("Place|to put it there"), hint: t("At its final place"), act: { act: "place", object, place: object } });
   }
   if (!held) {
-    offers.push({ label: "Hand over", hint: "Hold it between the fingers", act: { act: "hand_over", object } });
+    offers.push({ label: t("Hand over"), hint: t("Hold it between the fingers"), act: { act: "hand_over", object } });
   }
-  offers.push({ label: "Move …", hint: "To a spot on the table or another place", act: "where" });
+  offers.push({ label: t("Move …"), hint: t("To a spot on the table or another place"), act: "where" });
   return offers;
 }
 
 const DONE: Readonly<Record<Intervention["act"], (object: string) => string>> = {
-  steal: (object) => `The ${object} is taken away.`,
-  put_back: (object) => `The ${object} is back where it started.`,
-  place: (object) => `The ${object} is placed.`,
-  hand_over: (object) => `The ${object} is held out to the robot.`,
-  move: (object) => `The ${object} is moved.`,
-  block: () => "Somebody stands in the robot’s way.",
-  release: () => "The robot’s way is free.",
-  cover: () => "The head camera is covered.",
-  uncover: () => "The head camera’s view is clear.",
-  put_in: () => "Something is put into the robot’s basket.",
-  take_out: () => "Something is taken out of the robot’s basket.",
-  charge: () => "The robot is plugged in.",
-  bar: () => "A way of the building is barred.",
-  clear: () => "A way of the building is cleared.",
-  send_person: () => "Whom the robot escorts is told to come.",
-  misdirect: () => "A wrong button is pressed in an elevator.",
+  steal: (object) => t("The {object} is taken away.", { object }),
+  put_back: (object) => t("The {object} is back where it started.", { object }),
+  place: (object) => t("The {object} is placed.", { object }),
+  hand_over: (object) => t("The {object} is held out to the robot.", { object }),
+  move: (object) => t("The {object} is moved.", { object }),
+  block: () => t("Somebody stands in the robot’s way."),
+  release: () => t("The robot’s way is free."),
+  cover: () => t("The head camera is covered."),
+  uncover: () => t("The head camera’s view is clear."),
+  put_in: () => t("Something is put into the robot’s basket."),
+  take_out: () => t("Something is taken out of the robot’s basket."),
+  charge: () => t("The robot is plugged in."),
+  bar: () => t("A way of the building is barred."),
+  clear: () => t("A way of the building is cleared."),
+  send_person: () => t("Whom the robot escorts is told to come."),
+  misdirect: () => t("A wrong button is pressed in an elevator."),
 };
 
 /** One sentence on what was done. */

@@ -3,6 +3,7 @@ import { useState } from "preact/hooks";
 import { offersFor, type Offer, plain, type Target } from "./interventions";
 import { OfferMenu } from "./offer_menu";
 import type { Whereabouts } from "./pose_source";
+import { t } from "../../words/words";
 
 interface Props {
   whereabouts: readonly Whereabouts[];
@@ -26,12 +27,12 @@ export function ObjectList({ whereabouts, places, doers, offered, onChoose, onPo
           class="button"
           aria-haspopup="menu"
           aria-expanded={open === key}
-          aria-label={`Intervene: ${title}`}
+          aria-label={t("Intervene: {title}", { title })}
           onFocus={() => onPoint(key)}
           onBlur={() => onPoint(null)}
           onClick={() => setOpen(open === key ? null : key)}
         >
-          Intervene
+          {t("Intervene")}
         </button>
       )}
       {offered && open === key && (
@@ -48,12 +49,12 @@ export function ObjectList({ whereabouts, places, doers, offered, onChoose, onPo
     </li>
   );
   return (
-    <ul class="scene-list" aria-label="Objects, the arm and the camera">
+    <ul class="scene-list" aria-label={t("Objects, the arm and the camera")}>
       {whereabouts
         .filter((each) => each.kind === "object")
         .map((each) => row(each.name, plain(each.name), wordsFor(each, doers.get(each.name)), { ...each, kind: "object" }))}
-      {row(ARM, "the arm’s way", armIsBlocked(whereabouts) ? "blocked" : "free", armTarget(whereabouts))}
-      {row(HEAD, "the head camera", "", { kind: "head" })}
+      {row(ARM, t("the arm’s way"), armIsBlocked(whereabouts) ? t("blocked") : t("free"), armTarget(whereabouts))}
+      {row(HEAD, t("the head camera"), "", { kind: "head" })}
     </ul>
   );
 }
@@ -63,11 +64,11 @@ const ARM = "*arm";
 const HEAD = "*head";
 
 function wordsFor({ held, gone, hidden }: Whereabouts, doer?: string): string {
-  if (doer !== undefined) return `${doer} has taken it`;
-  if (gone) return "taken away";
-  if (held) return "held by the robot";
-  if (hidden) return "not to be seen now";
-  return "in sight";
+  if (doer !== undefined) return t("{doer} has taken it", { doer });
+  if (gone) return t("taken away");
+  if (held) return t("held by the robot");
+  if (hidden) return t("not to be seen now");
+  return t("in sight");
 }
 
 export function armTarget(whereabouts: readonly Whereabouts[]): Target {

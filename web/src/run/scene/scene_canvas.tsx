@@ -9,6 +9,7 @@ import { withoutRun } from "../../tree/words";
 import { plain } from "./interventions";
 import { handlePointer } from "./pointer";
 import type { Poses, Pointed, SceneView } from "./scene_view";
+import { t } from "../../words/words";
 
 interface Props {
   layout: Layout;
@@ -28,9 +29,9 @@ interface Props {
   children?: preact.ComponentChildren;
 }
 
-const HINT =
-  "3-D view of the robot and the objects. Arrow keys turn it, plus and minus zoom, Home resets it; " +
-  "Page Up and Page Down choose an object, Enter opens its menu.";
+const HINT = t(
+  "3-D view of the robot and the objects. Arrow keys turn it, plus and minus zoom, Home resets it; Page Up and Page Down choose an object, Enter opens its menu.",
+);
 
 export function SceneCanvas(props: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -59,7 +60,7 @@ export function SceneCanvas(props: Props) {
       if (gone || canvas.current === null) return;
       if (!hasWebGL()) throw new NoWebGL();
       const { layout, poses } = latest.current;
-      const modelMissing = () => latest.current.onNote("The robot’s model could not be loaded; its gripper stands for it.");
+      const modelMissing = () => latest.current.onNote(t("The robot’s model could not be loaded; its gripper stands for it."));
       made = createSceneView(
         canvas.current,
         layout,
@@ -128,8 +129,8 @@ export function SceneCanvas(props: Props) {
 
 class NoWebGL extends Error {}
 
-const NO_WEBGL = "This browser cannot draw in 3-D (it has no WebGL), so the cameras have to do.";
-const NOT_LOADED = "The 3-D view could not be loaded, so the cameras have to do.";
+const NO_WEBGL = t("This browser cannot draw in 3-D (it has no WebGL), so the cameras have to do.");
+const NOT_LOADED = t("The 3-D view could not be loaded, so the cameras have to do.");
 
 function hasWebGL(): boolean {
   const context = document.createElement("canvas").getContext("webgl2");

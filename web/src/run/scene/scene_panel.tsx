@@ -11,6 +11,7 @@ import { createPoseSource, type PoseSource } from "./pose_source";
 import { SceneCanvas } from "./scene_canvas";
 import { useIntervening } from "./intervening";
 import { WhereForm } from "./where_form";
+import { t } from "../../words/words";
 import "./scene.css";
 
 /** The column of the scene is shorter than that of the tree there. */
@@ -43,10 +44,10 @@ export function ScenePanel({ run, moment, doers }: ScenePanelProps) {
   return (
     <section class="panel scene" aria-labelledby="scene-title">
       <div class="panel-bar">
-        <h2 id="scene-title">Scene</h2>
+        <h2 id="scene-title">{t("Scene")}</h2>
         {layout !== null && failure === null && (
           <button type="button" class="small-button" aria-expanded={listed} onClick={toggleList}>
-            Objects as a list
+            {t("Objects as a list")}
           </button>
         )}
       </div>
@@ -107,19 +108,19 @@ export function ScenePanel({ run, moment, doers }: ScenePanelProps) {
 
 function titleOf(target: Target): string {
   if (target.kind === "object") return plain(target.name);
-  return target.kind === "arm" ? "the arm’s way" : "the head camera";
+  return target.kind === "arm" ? t("the arm’s way") : t("the head camera");
 }
 
 function stateSentence(source: PoseSource, moment: Moment): string {
-  if (!moment.live.value) return source.nothing.value ? "Nothing was recorded of this moment." : "";
+  if (!moment.live.value) return source.nothing.value ? t("Nothing was recorded of this moment.") : "";
   switch (source.state.value) {
     case "lost":
-      return "The connection is lost: this is the last that is known.";
+      return t("The connection is lost: this is the last that is known.");
     case "refused":
-      return "The service does not show this run’s scene.";
+      return t("The service does not show this run’s scene.");
     case "ended":
-      return source.layout.value === null ? "This run’s robot never said where anything is." : "";
+      return source.layout.value === null ? t("This run’s robot never said where anything is.") : "";
     default:
-      return source.layout.value === null ? "Waiting for the robot to say where everything is …" : "";
+      return source.layout.value === null ? t("Waiting for the robot to say where everything is …") : "";
   }
 }

@@ -1,6 +1,7 @@
 // Where to put an object: a place of the scene by name; the table itself is clicked in the picture.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { plain } from "./interventions";
+import { parts, t } from "../../words/words";
 
 interface Props {
   object: string;
@@ -19,6 +20,7 @@ export function WhereForm({ object, places, drawn, onPlace, onCancel }: Props) {
     form.current?.scrollIntoView({ block: "nearest" });
     form.current?.querySelector<HTMLElement>("select, button")?.focus({ preventScroll: true });
   }, []);
+  const named = { object: <strong>{plain(object)}</strong> };
   const submit = (event: SubmitEvent) => {
     event.preventDefault();
     onPlace(place);
@@ -29,14 +31,16 @@ export function WhereForm({ object, places, drawn, onPlace, onCancel }: Props) {
   return (
     <form ref={form} class="scene-where" onSubmit={submit} onKeyDown={leave}>
       <p>
-        {drawn ? "Click on the table where to put the " : "Choose where to put the "}
-        <strong>{plain(object)}</strong>
-        {drawn && places.length > 0 ? ", or choose a place." : "."}
+        {drawn
+          ? places.length > 0
+            ? parts("Click on the table where to put the {object}, or choose a place.", named)
+            : parts("Click on the table where to put the {object}.", named)
+          : parts("Choose where to put the {object}.", named)}
       </p>
       {places.length > 0 && (
         <>
           <label class="unseen" for="scene-place">
-            Place
+            {t("Place")}
           </label>
           <select id="scene-place" class="input" value={place} onChange={(event) => setPlace(event.currentTarget.value)}>
             {places.map((each) => (
@@ -46,12 +50,12 @@ export function WhereForm({ object, places, drawn, onPlace, onCancel }: Props) {
             ))}
           </select>
           <button class="button primary" type="submit">
-            Put there
+            {t("Put there")}
           </button>
         </>
       )}
       <button class="button" type="button" onClick={onCancel}>
-        Cancel
+        {t("Cancel")}
       </button>
     </form>
   );

@@ -4,6 +4,7 @@ import * as rest from "../../wire/rest";
 import type { RobotView } from "../../wire/types";
 import { type Filled, withChosen } from "./filled";
 import { connectedOnes, placesOf } from "./standing";
+import { t } from "../../words/words";
 
 const AGAIN_MS = 2000;
 
@@ -27,8 +28,8 @@ export function LiveRobots({ known, filled, fill }: LiveRobotsProps) {
   }, [filled.tree]);
   return (
     <fieldset class="start-robots" aria-describedby="start-robots-mistake">
-      <legend>Robots</legend>
-      {robots.length === 0 && <p class="quiet">No robot is connected.</p>}
+      <legend>{t("Robots")}</legend>
+      {robots.length === 0 && <p class="quiet">{t("No robot is connected.")}</p>}
       {filled.places.length === 0
         ? robots.map((robot) => <RobotBox key={robot.robot} robot={robot} filled={filled} fill={fill} />)
         : filled.places.map((place) => <PlaceChoice key={place} place={place} robots={robots} filled={filled} fill={fill} />)}
@@ -57,7 +58,7 @@ function PlaceChoice({ place, robots, filled, fill }: Omit<LiveRobotsProps, "kno
     <div class="field">
       <label for={`start-place-${place}`}>{place}</label>
       <select id={`start-place-${place}`} value={chosen} onChange={(event) => choose(event.currentTarget.value)}>
-        <option value="">Nobody</option>
+        <option value="">{t("Nobody")}</option>
         {withChosen(robots.map(({ robot }) => robot), chosen).map((robot) => (
           <option key={robot}>{robot}</option>
         ))}

@@ -10,15 +10,16 @@ import { AnswerChoice, WorldChoice } from "./choices";
 import { Field, Mistake, told } from "./field";
 import { type Choices, type Filled, firstFilled, isLive, readChoices, request, settled, withChosen } from "./filled";
 import { atTheirFields, type StartMistakes } from "./start_mistakes";
+import { t } from "../../words/words";
 import "./start_run.css";
 
 const SPEEDS: readonly (readonly [string, string])[] = [
-  ["0.5", "Half speed"],
-  ["1", "As in real life"],
-  ["2", "Twice as fast"],
-  ["5", "5 times as fast"],
-  ["20", "20 times as fast"],
-  ["max", "As fast as it can"],
+  ["0.5", t("Half speed")],
+  ["1", t("As in real life")],
+  ["2", t("Twice as fast")],
+  ["5", t("5 times as fast")],
+  ["20", t("20 times as fast")],
+  ["max", t("As fast as it can")],
 ];
 
 export function StartRun({ tree }: { tree: string | null }) {
@@ -30,9 +31,9 @@ export function StartRun({ tree }: { tree: string | null }) {
   }, [connected]);
   return (
     <section class="page start-page">
-      <h1>Start a run</h1>
+      <h1>{t("Start a run")}</h1>
       {choices === null ? (
-        <p class={mistake === "" ? "quiet" : "mistake"}>{mistake || "Loading …"}</p>
+        <p class={mistake === "" ? "quiet" : "mistake"}>{mistake || t("Loading …")}</p>
       ) : (
         <StartForm tree={tree} choices={choices} />
       )}
@@ -65,8 +66,8 @@ function StartForm({ tree, choices }: { tree: string | null; choices: Choices })
   return (
     <form class="start-form" noValidate onSubmit={(event) => void submit(event)}>
       <fieldset class="panel">
-        <legend>What is to be done</legend>
-        <Field field="tree" label="Task tree" mistakes={mistakes}>
+        <legend>{t("What is to be done")}</legend>
+        <Field field="tree" label={t("Task tree")} mistakes={mistakes}>
           <select id="start-tree" {...told("tree", mistakes)} value={filled.tree} onChange={(event) => fill({ tree: event.currentTarget.value })}>
             {withChosen(choices.trees.map(({ name }) => name), filled.tree).map((name) => (
               <option key={name}>{name}</option>
@@ -74,9 +75,9 @@ function StartForm({ tree, choices }: { tree: string | null; choices: Choices })
           </select>
         </Field>
         {!atSite && (
-          <Field field="scenario" label="Scenario" mistakes={mistakes} hint={scenario?.description ?? "A script of what goes wrong on the way."}>
+          <Field field="scenario" label={t("Scenario")} mistakes={mistakes} hint={scenario?.description ?? t("A script of what goes wrong on the way.")}>
             <select id="start-scenario" {...told("scenario", mistakes)} value={filled.scenario} onChange={(event) => fill({ scenario: event.currentTarget.value })}>
-              <option value="">None</option>
+              <option value="">{t("None")}</option>
               {scenarios.map(({ name }) => (
                 <option key={name}>{name}</option>
               ))}
@@ -87,11 +88,11 @@ function StartForm({ tree, choices }: { tree: string | null; choices: Choices })
       <WorldChoice choices={choices} filled={filled} fill={fill} mistakes={mistakes} />
       <AnswerChoice scripted={(scenario?.answers.length ?? 0) > 0} filled={filled} fill={fill} mistakes={mistakes} />
       <fieldset class="panel">
-        <legend>How it goes</legend>
+        <legend>{t("How it goes")}</legend>
         <div class="start-row">
           {!atSite && (
             <>
-              <Field field="speed" label="Speed" mistakes={mistakes}>
+              <Field field="speed" label={t("Speed")} mistakes={mistakes}>
                 <select id="start-speed" {...told("speed", mistakes)} value={filled.speed} onChange={(event) => fill({ speed: event.currentTarget.value })}>
                   {SPEEDS.map(([value, text]) => (
                     <option key={value} value={value}>
@@ -100,15 +101,15 @@ function StartForm({ tree, choices }: { tree: string | null; choices: Choices })
                   ))}
                 </select>
               </Field>
-              <Field field="seed" label="Seed" mistakes={mistakes} hint="The same seed gives the same chances again.">
+              <Field field="seed" label={t("Seed")} mistakes={mistakes} hint={t("The same seed gives the same chances again.")}>
                 <input id="start-seed" {...told("seed", mistakes)} type="number" inputMode="numeric" value={filled.seed} onInput={number("seed")} />
               </Field>
             </>
           )}
-          <Field field="max_attempts" label="Attempts" mistakes={mistakes} hint="After so many failed ones a behavior is given up.">
+          <Field field="max_attempts" label={t("Attempts")} mistakes={mistakes} hint={t("After so many failed ones a behavior is given up.")}>
             <input id="start-max_attempts" {...told("max_attempts", mistakes)} type="number" inputMode="numeric" value={filled.maxAttempts} onInput={number("maxAttempts")} />
           </Field>
-          <Field field="autonomy" label="Autonomy" mistakes={mistakes} hint="Where the robot asks first it waits until an operator lets it go on.">
+          <Field field="autonomy" label={t("Autonomy")} mistakes={mistakes} hint={t("Where the robot asks first it waits until an operator lets it go on.")}>
             <select id="start-autonomy" {...told("autonomy", mistakes)} value={filled.autonomy} onChange={(event) => fill({ autonomy: event.currentTarget.value as AutonomyLevel })}>
               <LevelOptions />
             </select>
@@ -118,8 +119,8 @@ function StartForm({ tree, choices }: { tree: string | null; choices: Choices })
           <label class="choice">
             <input type="checkbox" checked={filled.interventions} onChange={(event) => fill({ interventions: event.currentTarget.checked })} />
             <span>
-              <strong>Somebody interferes</strong>
-              <span class="small quiet">A simulated person steals, moves and blocks by chance.</span>
+              <strong>{t("Somebody interferes")}</strong>
+              <span class="small quiet">{t("A simulated person steals, moves and blocks by chance.")}</span>
             </span>
           </label>
         )}
@@ -127,9 +128,9 @@ function StartForm({ tree, choices }: { tree: string | null; choices: Choices })
       </fieldset>
       <div class="page-actions">
         <button class="button primary" type="submit" disabled={starting || !may("operator")}>
-          {starting ? "Starting …" : "Start the run"}
+          {starting ? t("Starting …") : t("Start the run")}
         </button>
-        {!may("operator") && <p class="quiet">{whyNot("Starting a run", "operator")}</p>}
+        {!may("operator") && <p class="quiet">{whyNot(t("Starting a run"), "operator")}</p>}
         <Mistake field="form" mistakes={mistakes} />
       </div>
     </form>

@@ -3,6 +3,7 @@ import { useId } from "preact/hooks";
 import type { AutonomyLevel } from "../../wire/types";
 import { LEVELS } from "./steering_fold";
 import { LEVEL_WORDS } from "./steering_words";
+import { t } from "../../words/words";
 
 interface AutonomyChoiceProps {
   level: AutonomyLevel;
@@ -16,7 +17,7 @@ export function AutonomyChoice({ level, disabled, onChoose }: AutonomyChoiceProp
   return (
     <div class="steering-row">
       <label class="small" for={id}>
-        Autonomy
+        {t("Autonomy")}
       </label>
       <select
         id={id}

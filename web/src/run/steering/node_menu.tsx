@@ -4,6 +4,7 @@ import { plain } from "../../tree/words";
 import type { NodeSteeringView, SteerNodeRequest } from "../../wire/types";
 import { sentence } from "../run_words";
 import { ACT_WORDS } from "./steering_words";
+import { t } from "../../words/words";
 
 interface NodeMenuProps {
   offers: NodeSteeringView;
@@ -18,9 +19,9 @@ export function NodeMenu({ offers, busy, say }: NodeMenuProps) {
   const id = useId();
   const refused = offers.refused.filter(({ act }) => !GOES_WITHOUT_SAYING.has(act));
   return (
-    <div class="node-menu" role="group" aria-label={`Steer ${plain(offers.name)}`}>
+    <div class="node-menu" role="group" aria-label={t("Steer {name}", { name: plain(offers.name) })}>
       <h3>{plain(offers.name)}</h3>
-      {offers.offered.length === 0 && <p class="quiet small">Nothing can be said of it now.</p>}
+      {offers.offered.length === 0 && <p class="quiet small">{t("Nothing can be said of it now.")}</p>}
       <ul>
         {offers.offered.map(({ act, effect }) => (
           <li key={act}>
@@ -35,7 +36,7 @@ export function NodeMenu({ offers, busy, say }: NodeMenuProps) {
       </ul>
       {refused.length > 0 && (
         <details class="small">
-          <summary>What cannot be said now</summary>
+          <summary>{t("What cannot be said now")}</summary>
           <ul>
             {refused.map(({ act, why }) => (
               <li key={act}>

@@ -7,6 +7,7 @@ import * as rest from "../../wire/rest";
 import type { WaitView } from "../../wire/types";
 import { sentence } from "../run_words";
 import { whyItWaits } from "./steering_words";
+import { t } from "../../words/words";
 import "./run_waits.css";
 
 interface RunWaitsProps {
@@ -30,20 +31,18 @@ export function RunWaits({ run, tree, waits, going }: RunWaitsProps) {
       .then(() => setBusy(false));
   };
   return (
-    <div class="run-waits" role="group" aria-label="Waits to be let go">
+    <div class="run-waits" role="group" aria-label={t("Waits to be let go")}>
       {waits.map((wait) => (
         <div key={wait.node} class="run-wait">
           <p>
-            {tree === undefined ? "The run" : <a href={`/runs/${run}`}>{plain(tree)}</a>} {whyItWaits(wait)}
+            {tree === undefined ? t("The run") : <a href={`/runs/${run}`}>{plain(tree)}</a>} {whyItWaits(wait)}
           </p>
           {going && may("operator") && (
-            <button type="button" class="button primary" disabled={busy} aria-label={`Go on: ${plain(wait.name)}`} onClick={() => letGo(wait.node)}>
-              Go on
-            </button>
+            <button type="button" class="button primary" disabled={busy} aria-label={t("Go on: {name}", { name: plain(wait.name) })} onClick={() => letGo(wait.node)}>{t("Go on")}</button>
           )}
         </div>
       ))}
-      {going && !may("operator") && <p class="quiet small">{whyNot("Letting it go on", "operator")}</p>}
+      {going && !may("operator") && <p class="quiet small">{whyNot(t("Letting it go on"), "operator")}</p>}
       <p role="status" class="mistake small">
         {note}
       </p>

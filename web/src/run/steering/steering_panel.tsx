@@ -10,6 +10,7 @@ import { sentence } from "../run_words";
 import { AutonomyChoice } from "./autonomy_choice";
 import { NodeMenu } from "./node_menu";
 import { useOffers } from "./use_offers";
+import { t } from "../../words/words";
 import "./steering_panel.css";
 
 interface SteeringPanelProps {
@@ -45,7 +46,7 @@ export function SteeringPanel({ state, selected, newest, onSelect }: SteeringPan
   if (!going && breakpoints.size === 0 && autonomy === "full") return null;
   return (
     <section class="panel steering" aria-labelledby="steering-title">
-      <h2 id="steering-title">Steering</h2>
+      <h2 id="steering-title">{t("Steering")}</h2>
       <AutonomyChoice
         level={autonomy}
         disabled={!offered || busy}
@@ -55,21 +56,19 @@ export function SteeringPanel({ state, selected, newest, onSelect }: SteeringPan
       {offered && selected !== null && offers !== null && (
         <NodeMenu key={selected.node} offers={offers} busy={busy} say={(act) => void ask(rest.steer(run, { act, node: selected.node, ...said }))} />
       )}
-      {offered && selected === null && <p class="quiet small">Choose a node of the tree to steer it.</p>}
-      {preferred !== null && <p class="small">{`${preferred.by} has asked for ${plain(preferred.name)} next.`}</p>}
+      {offered && selected === null && <p class="quiet small">{t("Choose a node of the tree to steer it.")}</p>}
+      {preferred !== null && <p class="small">{t("{by} has asked for {name} next.", { by: preferred.by, name: plain(preferred.name) })}</p>}
       {breakpoints.size > 0 && (
         <ul class="steering-breakpoints">
           {[...breakpoints.values()].map(({ node, name, by, reason }) => (
             <li key={node}>
-              <button type="button" class="bare link" onClick={() => onSelect(node)}>
-                Breakpoint before {plain(name)}
-              </button>
-              <span class="small quiet">{` by ${by}${reason === "" ? "" : `: ${reason}`}`}</span>
+              <button type="button" class="bare link" onClick={() => onSelect(node)}>{t("Breakpoint before {name}", { name: plain(name) })}</button>
+              <span class="small quiet">{` ${reason === "" ? t("by {by}", { by }) : t("by {by}: {reason}", { by, reason })}`}</span>
             </li>
           ))}
         </ul>
       )}
-      {going && !may("operator") && <p class="quiet small">{whyNot("Steering it", "operator")}</p>}
+      {going && !may("operator") && <p class="quiet small">{whyNot(t("Steering it"), "operator")}</p>}
       <p role="status" class="mistake small">
         {note}
       </p>
@@ -84,14 +83,12 @@ function Why({ reason, onInput }: { reason: string; onInput(reason: string): voi
   const id = useId();
   return (
     <div class="steering-row">
-      <label class="small" for={id}>
-        Why
-      </label>
+      <label class="small" for={id}>{t("Why")}</label>
       <input
         id={id}
         class="input"
         autocomplete="off"
-        placeholder="if you like"
+        placeholder={t("if you like")}
         maxLength={MOST_CHARACTERS}
         value={reason}
         onInput={(event) => onInput(event.currentTarget.value)}

@@ -3,6 +3,7 @@ import { plain, withoutRun } from "../../tree/words";
 import type { DialogueClosed, Event, NodeDone, NodeLeftOut, NodeReset, Resolution, RobotBack } from "../../wire/types";
 import type { Told } from "../../wire/told";
 import { lastOf } from "../transcript_lines";
+import { t } from "../../words/words";
 
 export type LaneKind = "steps" | "faults" | "lost" | "dialogues" | "people" | "waits" | "resolutions";
 
@@ -28,19 +29,19 @@ export interface Lane {
 }
 
 export const RESOLUTION_WORDS: Readonly<Record<Resolution, string>> = {
-  human_finish: "human finished",
-  robot_finish: "robot goes on",
-  collab_finish: "both finish",
-  robot_retry: "tries again",
+  human_finish: t("human finished"),
+  robot_finish: t("robot goes on"),
+  collab_finish: t("both finish"),
+  robot_retry: t("tries again"),
 };
 
 const STEERING_WORDS = {
-  breakpoint_set: "breakpoint",
-  breakpoint_removed: "no breakpoint",
-  leaf_let_go: "go on",
-  leaf_preferred: "next",
-  leaf_not_preferred: "not next",
-  leaf_tried_again: "again",
+  breakpoint_set: t("breakpoint"),
+  breakpoint_removed: t("no breakpoint"),
+  leaf_let_go: t("go on"),
+  leaf_preferred: t("next"),
+  leaf_not_preferred: t("not next"),
+  leaf_tried_again: t("again"),
 } as const;
 
 const ENDS_A_WAIT: ReadonlySet<Event["type"]> = new Set([
@@ -60,9 +61,9 @@ const ENDS_ALL_WAITS: ReadonlySet<Event["type"]> = new Set([
 ]);
 
 const ENDINGS = {
-  node_done: ["done", "done"],
-  node_left_out: ["put-back", "left out"],
-  node_reset: ["put-back", "put back"],
+  node_done: ["done", t("done")],
+  node_left_out: ["put-back", t("left out")],
+  node_reset: ["put-back", t("put back")],
 } as const;
 
 interface Growing extends TimelineItem {
@@ -98,7 +99,7 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
         lanes.people.push(point(event, STEERING_WORDS[event.type], `${event.by} ${lastOf(event)}`, "deed", event.node));
         break;
       case "autonomy_set":
-        lanes.people.push(point(event, `autonomy ${event.level}`, `${event.by} ${lastOf(event)}`, "deed", null));
+        lanes.people.push(point(event, t("autonomy {level}", { level: event.level }), `${event.by} ${lastOf(event)}`, "deed", null));
         break;
       case "leaf_held": {
         const item = bar(event, now, plain(event.name), lastOf(event), "held", event.node);
@@ -108,7 +109,7 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
       }
       case "node_started": {
         const name = plain(event.name);
-        const item = bar(event, now, name, `${name}, attempt ${event.attempt}`, "execution", event.node);
+        const item = bar(event, now, name, t("{name}, attempt {attempt}", { name, attempt: event.attempt }), "execution", event.node);
         running.set(event.node, item);
         steps.get(event.robot)?.push(item);
         break;
@@ -117,7 +118,7 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
         const parts = running.get(event.node)?.parts;
         closePart(parts, event.time);
         const word = `${event.step} ${plain(event.step_name)}`;
-        parts?.push(bar(event, now, word, `step ${word} of ${plain(event.name)}`, "step", event.node));
+        parts?.push(bar(event, now, word, t("step {word} of {name}", { word, name: plain(event.name) }), "step", event.node));
         break;
       }
       case "node_done":
@@ -126,10 +127,10 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
         endExecution(running, event);
         break;
       case "node_taken":
-        lanes.people.push(point(event, "takes", `${event.helper} takes ${plain(event.name)}`, "deed", event.node));
+        lanes.people.push(point(event, "takes", t("{helper} takes {name}", { helper: event.helper, name: plain(event.name) }), "deed", event.node));
         break;
       case "node_undone":
-        lanes.faults.push(point(event, "undone", `${plain(event.name)} is done no longer: ${event.reason}`, "fault", event.node));
+        lanes.faults.push(point(event, "undone", t("{name} is done no longer: {reason}", { name: plain(event.name), reason: event.reason }), "fault", event.node));
         break;
       case "issue_raised": {
         const about = plain(event.object ?? event.name);
@@ -139,7 +140,7 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
       case "robot_lost": {
         const robot = withoutRun(event.robot);
         if (away.has(event.robot)) break;
-        const item = bar(event, now, robot, `${robot} is lost: ${event.reason}`, "lost", null);
+        const item = bar(event, now, robot, t("{robot} is lost: {reason}", { robot, reason: event.reason }), "lost", null);
         away.set(event.robot, item);
         lanes.lost.push(item);
         break;
@@ -153,7 +154,7 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
         for (const item of away.values()) item.end = event.time;
         break;
       case "dialogue_opened": {
-        const title = `dialogue about ${plain(event.issue)}, ${plain(event.object ?? event.name)}`;
+        const title = t("dialogue about {issue}, {part}", { issue: plain(event.issue), part: plain(event.object ?? event.name) });
         const item = bar(event, now, plain(event.object ?? event.name), title, "dialogue", event.node);
         open.set(event.dialogue, item);
         lanes.dialogues.push(item);
@@ -184,13 +185,13 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
   }
   const several = started.robots.length > 1;
   return [
-    ...[...steps].map(([robot, items]): Lane => ({ kind: "steps", name: several ? robot : "Steps", items })),
-    { kind: "faults", name: "Faults", items: lanes.faults },
-    ...(lanes.lost.length > 0 ? [{ kind: "lost", name: "Robot lost", items: lanes.lost } as const] : []),
-    { kind: "dialogues", name: "Dialogues", items: lanes.dialogues },
-    { kind: "people", name: "People", items: lanes.people },
-    ...(lanes.waits.length > 0 ? [{ kind: "waits", name: "Waits", items: lanes.waits } as const] : []),
-    { kind: "resolutions", name: "Resolutions", items: lanes.resolutions },
+    ...[...steps].map(([robot, items]): Lane => ({ kind: "steps", name: several ? robot : t("Steps"), items })),
+    { kind: "faults", name: t("Faults"), items: lanes.faults },
+    ...(lanes.lost.length > 0 ? [{ kind: "lost", name: t("Robot lost"), items: lanes.lost } as const] : []),
+    { kind: "dialogues", name: t("Dialogues"), items: lanes.dialogues },
+    { kind: "people", name: t("People"), items: lanes.people },
+    ...(lanes.waits.length > 0 ? [{ kind: "waits", name: t("Waits"), items: lanes.waits } as const] : []),
+    { kind: "resolutions", name: t("Resolutions"), items: lanes.resolutions },
   ];
 }
 
@@ -242,7 +243,7 @@ function comeBack(away: Map<string, Growing>, event: RobotBack): void {
   if (item === undefined) return;
   away.delete(event.robot);
   item.end = event.time;
-  item.title += ", and back";
+  item.title += t(", and back");
 }
 
 /** From so many seconds on people count in minutes and hours. */

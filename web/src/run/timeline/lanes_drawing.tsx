@@ -9,8 +9,9 @@ import { type Lane, ticksOf, type TimelineItem } from "./lanes";
 import { AXIS_PX, usePointer, useWheel } from "./pointer";
 import { type Scale, scaleOf, type Span } from "./span";
 import { useWalk } from "./walk";
+import { t } from "../../words/words";
 
-const LABEL = "Lanes; the arrow keys go from one thing to the next, Enter goes to its moment";
+const LABEL = t("Lanes; the arrow keys go from one thing to the next, Enter goes to its moment");
 const LABELS_PX = 96;
 const NAME_CHARACTERS = 12;
 const NARROW_PX = 560;

@@ -3,17 +3,18 @@ import { useState } from "preact/hooks";
 import type { Moment } from "../moment";
 import { clock } from "../run_words";
 import type { Lane, LaneKind, TimelineItem } from "./lanes";
+import { t } from "../../words/words";
 
 const AT_ONCE = 200;
 
 const KIND_WORDS: Readonly<Record<LaneKind, string>> = {
-  steps: "Start",
-  faults: "Fault",
-  lost: "Robot lost",
-  dialogues: "Dialogue",
-  people: "Person",
-  waits: "Waits",
-  resolutions: "Resolution",
+  steps: t("Start"),
+  faults: t("Fault"),
+  lost: t("Robot lost"),
+  dialogues: t("Dialogue"),
+  people: t("Person"),
+  waits: t("Waits"),
+  resolutions: t("Resolution"),
 };
 
 interface TimelineListProps {
@@ -29,7 +30,7 @@ export function TimelineList({ lanes, moment, onChoose }: TimelineListProps) {
     .sort((a, b) => a.item.seq - b.item.seq);
   const current = all.findLast(({ item }) => item.start <= moment.time.value)?.item.seq;
   return (
-    <ol class="timeline-list" aria-label="Timeline as a list">
+    <ol class="timeline-list" aria-label={t("Timeline as a list")}>
       {all.slice(0, most).map(({ kind, item }) => (
         <li key={item.seq} aria-current={item.seq === current ? "time" : undefined}>
           <button type="button" class="bare" onClick={() => onChoose(item)}>
@@ -40,7 +41,7 @@ export function TimelineList({ lanes, moment, onChoose }: TimelineListProps) {
       {all.length > most && (
         <li>
           <button type="button" class="bare" onClick={() => setMost(most + AT_ONCE)}>
-            Show {Math.min(AT_ONCE, all.length - most)} more
+            {t("Show {count} more", { count: Math.min(AT_ONCE, all.length - most) })}
           </button>
         </li>
       )}

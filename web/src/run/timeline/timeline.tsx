@@ -6,6 +6,7 @@ import type { Lane, TimelineItem } from "./lanes";
 import { Lanes } from "./lanes_drawing";
 import { TimelineList } from "./list";
 import { middleOf, SMALLEST_SPAN_S, type Span, zoomed } from "./span";
+import { t } from "../../words/words";
 import "./timeline.css";
 
 interface TimelineProps {
@@ -26,23 +27,19 @@ export function Timeline(props: TimelineProps) {
   const shown = span ?? whole;
   const zoom = (factor: number, around = middleOf(shown, props.moment.time.peek())) => setSpan(zoomed(shown, factor, around, whole));
   return (
-    <section class="timeline" aria-label="Timeline">
+    <section class="timeline" aria-label={t("Timeline")}>
       <div class="panel-bar">
-        <h2>Timeline</h2>
+        <h2>{t("Timeline")}</h2>
         {props.more}
-        <button type="button" class="small-button" aria-pressed={asList} onClick={() => setAsList(!asList)}>
-          Events as a list
-        </button>
-        <div class="tree-zoom" role="group" aria-label="Span of the timeline">
-          <button type="button" aria-label="Longer span" disabled={span === null} onClick={() => zoom(2)}>
+        <button type="button" class="small-button" aria-pressed={asList} onClick={() => setAsList(!asList)}>{t("Events as a list")}</button>
+        <div class="tree-zoom" role="group" aria-label={t("Span of the timeline")}>
+          <button type="button" aria-label={t("Longer span")} disabled={span === null} onClick={() => zoom(2)}>
             −
           </button>
-          <button type="button" aria-label="The whole run" onClick={() => setSpan(null)}>
-            Whole
-          </button>
+          <button type="button" aria-label={t("The whole run")} onClick={() => setSpan(null)}>{t("Whole")}</button>
           <button
             type="button"
-            aria-label="Shorter span"
+            aria-label={t("Shorter span")}
             disabled={shown.to - shown.from <= SMALLEST_SPAN_S}
             onClick={() => zoom(0.5)}
           >

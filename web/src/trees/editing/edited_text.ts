@@ -8,6 +8,7 @@ import { sameValue } from "../../yaml_text/values";
 import { childrenOf, goalKindOf, type GoalKind, nodeAt, pathOf, type PlainNode, stepsOf } from "./plain_node";
 import { childrenAt, mapAt, placeOf, readTask, type TaskSource } from "./task_source";
 import { applied, selectedAfter, type TreeEdit } from "./tree_edit";
+import { t } from "../../words/words";
 
 export interface Edited {
   text: string;
@@ -18,7 +19,7 @@ export interface Edited {
 /** Do an edit. Raises `CannotEdit` where the text cannot say it. */
 export function edited(text: string, edit: TreeEdit): Edited {
   const source = readTask(text);
-  if (source === null) throw new CannotEdit("The text has no tree that can be changed in the drawing.");
+  if (source === null) throw new CannotEdit(t("The text has no tree that can be changed in the drawing."));
   const selected = selectedAfter(source.tree, edit);
   if (edit.do !== "dissolve") return { text: editedAtOnce(source, edit), selected };
   return { text: dissolving(source, edit.path).reduce((before, step) => edited(before, step).text, text), selected };
@@ -28,7 +29,7 @@ export function edited(text: string, edit: TreeEdit): Edited {
 function dissolving({ tree }: TaskSource, path: string): TreeEdit[] {
   const steps = stepsOf(path);
   const index = steps.pop();
-  if (index === undefined) throw new CannotEdit("The root cannot be dissolved.");
+  if (index === undefined) throw new CannotEdit(t("The root cannot be dissolved."));
   const into = pathOf(steps);
   const count = childrenOf(nodeAt(tree, path) as PlainNode).length;
   const out = Array.from({ length: count }, (_, done): TreeEdit => {
@@ -45,7 +46,7 @@ function editedAtOnce(source: TaskSource, edit: EditAtOnce): string {
   const lost = edit.do === "remove" ? [] : lostComments(source.text, after);
   const right = read !== null && sameValue(read.tree, applied(source.tree, edit)) && sameValue(read.head, source.head);
   if (!right || lost.length > 0) {
-    throw new CannotEdit("This cannot be said in the text as it is written here: change it in the text.");
+    throw new CannotEdit(t("This cannot be said in the text as it is written here: change it in the text."));
   }
   return after;
 }
@@ -74,7 +75,7 @@ function splicesOf(source: TaskSource, edit: Exclude<EditAtOnce, { do: "fill" }>
 function moved(source: TaskSource, { path, into, at }: Extract<TreeEdit, { do: "move" }>): Splice[] {
   const { owner, index } = placeOf(source, path);
   const target = childrenAt(source, into);
-  if (`${into}/`.startsWith(`${path}/`)) throw new CannotEdit("A node cannot be moved into itself.");
+  if (`${into}/`.startsWith(`${path}/`)) throw new CannotEdit(t("A node cannot be moved into itself."));
   const same = target.pair === owner.pair;
   if (same && at === index) return [];
   const inserted = itemInserted(source, target, same && at >= index ? at + 1 : at, itemOf(source, owner, index));
@@ -126,7 +127,7 @@ function filled(source: TaskSource, path: string, values: PlainNode): string {
   let text = source.text;
   const change = (of: (now: TaskSource) => Splice[]) => {
     const now = readTask(text);
-    if (now === null) throw new CannotEdit("This cannot be said in the text: change it there.");
+    if (now === null) throw new CannotEdit(t("This cannot be said in the text: change it there."));
     text = spliced(text, of(now));
   };
   for (const [key, value] of Object.entries(values)) {

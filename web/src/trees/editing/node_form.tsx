@@ -5,6 +5,7 @@ import type { SceneNames } from "./new_nodes";
 import { ParameterField } from "./parameter_field";
 import { AUTONOMY, type Parameter, parametersOf } from "./parameters";
 import { GOAL_KINDS, goalKindOf, type GoalKind, type PlainNode } from "./plain_node";
+import { t } from "../../words/words";
 
 interface NodeFormProps {
   node: PlainNode;
@@ -25,11 +26,11 @@ export function NodeForm(props: NodeFormProps) {
   const said = kind === null ? node : withoutKey(node, kind);
   const rename = (name: string) => onFill(name === "" ? withoutKey(said, "name") : { ...said, name });
   return (
-    <form class="node-form" aria-label="The selected node" onSubmit={(event) => event.preventDefault()}>
+    <form class="node-form" aria-label={t("The selected node")} onSubmit={(event) => event.preventDefault()}>
       <div class="node-form-head">
         <h2>{plain(called)}</h2>
         <button type="button" class="tool" onClick={onShow}>
-          Show in the text
+          {t("Show in the text")}
         </button>
       </div>
       {problems.map((problem) => (
@@ -39,7 +40,7 @@ export function NodeForm(props: NodeFormProps) {
       ))}
       <div class="node-fields">
         <div class="field">
-          <label for="node-name">Name of this node</label>
+          <label for="node-name">{t("Name of this node")}</label>
           <input
             id="node-name"
             class="mono"
@@ -60,7 +61,7 @@ export function NodeForm(props: NodeFormProps) {
 function KindField({ kind, onKind }: { kind: GoalKind; onKind: (kind: GoalKind) => void }) {
   return (
     <div class="field">
-      <label for="node-kind">Kind</label>
+      <label for="node-kind">{t("Kind")}</label>
       <select id="node-kind" value={kind} onChange={(event) => onKind(event.currentTarget.value as GoalKind)}>
         {GOAL_KINDS.map((each) => (
           <option key={each} value={each}>
@@ -82,9 +83,9 @@ function LeafFields({ node, behaviors, scene, onFill }: NodeFormProps) {
   return (
     <>
       <div class="field">
-        <label for="node-behavior">Behavior</label>
+        <label for="node-behavior">{t("Behavior")}</label>
         <select id="node-behavior" value={behavior} onChange={(event) => onFill(withBehavior(node, event.currentTarget.value, behaviors))}>
-          {known === undefined && <option value={behavior}>{behavior === "" ? "none yet" : behavior}</option>}
+          {known === undefined && <option value={behavior}>{behavior === "" ? t("none yet") : behavior}</option>}
           {behaviors?.map(({ name }) => (
             <option key={name} value={name}>
               {name}
@@ -105,7 +106,7 @@ function LeafFields({ node, behaviors, scene, onFill }: NodeFormProps) {
         <div key={key} class="field">
           <span class="label">{key}</span>
           <button type="button" class="tool" onClick={() => set(key, undefined)}>
-            Remove '{key}', which {behavior} does not have
+            {t("Remove '{key}', which {behavior} does not have", { key, behavior })}
           </button>
         </div>
       ))}

@@ -2,6 +2,7 @@
 import { useState } from "preact/hooks";
 import { plain } from "../../tree/words";
 import { enteredOf, type Parameter, valueOf } from "./parameters";
+import { t } from "../../words/words";
 
 interface ParameterFieldProps {
   parameter: Parameter;
@@ -20,7 +21,7 @@ export function ParameterField({ parameter, value, names, onValue }: ParameterFi
       onValue(valueOf(parameter, entered));
       setMistake("");
     } catch {
-      setMistake(`What is given for '${key}' is no JSON.`);
+      setMistake(t("What is given for '{key}' is no JSON.", { key }));
     }
   };
   const entered = enteredOf(parameter, value);
@@ -30,7 +31,7 @@ export function ParameterField({ parameter, value, names, onValue }: ParameterFi
       <label for={id}>{plain(key)}</label>
       {kind === "truth" || kind === "choice" ? (
         <select id={id} value={entered} onChange={(event) => enter(event.currentTarget.value)}>
-          {!required || entered === "" ? <option value="">not said</option> : null}
+          {!required || entered === "" ? <option value="">{t("not said")}</option> : null}
           {options.map(([each, said]) => (
             <option key={each} value={each}>
               {said}
@@ -69,6 +70,6 @@ export function ParameterField({ parameter, value, names, onValue }: ParameterFi
 }
 
 const TRUTHS = [
-  ["true", "yes"],
-  ["false", "no"],
+  ["true", t("yes")],
+  ["false", t("no")],
 ] as const;

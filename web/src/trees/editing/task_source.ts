@@ -4,6 +4,7 @@ import type { Owner } from "../../yaml_text/items";
 import { CannotEdit, endOf, pairOf, plainOf, readYaml, startOf, type YamlSource } from "../../yaml_text/source";
 import { isRecord } from "../../yaml_text/values";
 import { GOAL_KINDS, isNode, pathOf, type PlainNode, stepsOf, withPaths } from "./plain_node";
+import { t } from "../../words/words";
 
 /** Longer ones are drawn, but changed as text alone: each change reads all of it. */
 export const LONGEST_TEXT = 256 * 1024;
@@ -51,13 +52,13 @@ function fieldsOf(source: YamlSource): Record<string, unknown> {
 export function mapAt(source: TaskSource, path: string): YAMLMap {
   let found: unknown = source.doc.get("tree", true);
   for (const step of stepsOf(path)) found = childAt(found, step);
-  if (isAlias(found)) throw new CannotEdit("This node stands in the text as an alias of another one: change it in the text.");
-  if (!isMap(found)) throw new CannotEdit("This node cannot be found in the text.");
+  if (isAlias(found)) throw new CannotEdit(t("This node stands in the text as an alias of another one: change it in the text."));
+  if (!isMap(found)) throw new CannotEdit(t("This node cannot be found in the text."));
   return found;
 }
 
 function childAt(node: unknown, index: number): unknown {
-  if (isAlias(node)) throw new CannotEdit("A node above this one is an alias in the text: change it in the text.");
+  if (isAlias(node)) throw new CannotEdit(t("A node above this one is an alias in the text: change it in the text."));
   if (!isMap(node)) return null;
   const kind = GOAL_KINDS.find((each) => node.has(each));
   const children = kind === undefined ? null : node.get(kind, true);
@@ -69,7 +70,7 @@ export function childrenAt(source: TaskSource, path: string): Owner {
   const map = mapAt(source, path);
   const kind = GOAL_KINDS.find((each) => map.has(each));
   const pair = kind === undefined ? null : pairOf(map, kind);
-  if (pair === null) throw new CannotEdit("Only a goal node has children.");
+  if (pair === null) throw new CannotEdit(t("Only a goal node has children."));
   return { map, pair };
 }
 
@@ -77,7 +78,7 @@ export function childrenAt(source: TaskSource, path: string): Owner {
 export function placeOf(source: TaskSource, path: string): { owner: Owner; index: number } {
   const steps = stepsOf(path);
   const index = steps.pop();
-  if (index === undefined) throw new CannotEdit("The root cannot be moved or deleted: put another node above it first.");
+  if (index === undefined) throw new CannotEdit(t("The root cannot be moved or deleted: put another node above it first."));
   return { owner: childrenAt(source, pathOf(steps)), index };
 }
 

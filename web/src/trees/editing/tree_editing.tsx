@@ -16,6 +16,7 @@ import { type Action, actionOf } from "./tree_keys";
 import { TreeTools, type Where } from "./tree_tools";
 import { useFocusKept } from "./use_focus_kept";
 import { type TreeWork, useTreeWork } from "./use_tree_work";
+import { t } from "../../words/words";
 
 interface TreeEditingProps {
   editing: Editing;
@@ -136,13 +137,17 @@ function Drawing({ nodes, tree, problems, onSelect, onAction }: DrawingProps) {
     onAction(action);
   };
   const over = (path: string, drop: Drop | null) => {
-    tree.say(drop === null ? `${tree.called(path)} stays where it is.` : `${tree.called(path)}: ${hands.placeSaid(work, drop)}`);
+    tree.say(
+      drop === null
+        ? t("{path} stays where it is.", { path: tree.called(path) })
+        : `${tree.called(path)}: ${hands.placeSaid(work, drop)}`,
+    );
   };
   return (
     <div ref={drawing}>
       <TreeDrawing
         nodes={nodes}
-        label="Drawing of this text"
+        label={t("Drawing of this text")}
         selected={work.selected}
         focus={work.selected}
         onSelect={onSelect}

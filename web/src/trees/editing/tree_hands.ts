@@ -6,6 +6,7 @@ import { type Direction, type Drop, droppedAt, movedTo, placeAt } from "./moves"
 import { newLeaf, type RequiredOf, type SceneNames, withFreeNames } from "./new_nodes";
 import { goalKindOf, type GoalKind, nodeAt, pathOf, type PlainNode, stepsOf } from "./plain_node";
 import type { TreeEdit } from "./tree_edit";
+import { t } from "../../words/words";
 
 /** What was copied or cut last, on this page. */
 let copied: PlainNode | null = null;
@@ -38,7 +39,7 @@ function selectedNode({ tree, selected }: Work): PlainNode {
   return nodeAt(tree, selected) as PlainNode;
 }
 
-const ALONE = "Nothing can stand beside the root: wrap it first.";
+const ALONE = t("Nothing can stand beside the root: wrap it first.");
 
 /** `where` is undefined where there is no place for anything. */
 export function add(work: Work, what: GoalKind | "leaf", where: Drop["where"] | undefined): void {
@@ -48,7 +49,11 @@ export function add(work: Work, what: GoalKind | "leaf", where: Drop["where"] | 
   const leaf = newLeaf(tree, goalKindOf(node) === null ? node : null, scene, required);
   const added = what === "leaf" ? leaf : { [what]: [leaf] };
   const place = placeAt(tree, { path: selected, where });
-  doIt(work, { do: "insert", ...place, node: added }, `${what === "leaf" ? "A leaf" : KIND_WORDS[what]} was added.`);
+  doIt(
+    work,
+    { do: "insert", ...place, node: added },
+    t("{node} was added.", { node: what === "leaf" ? t("A leaf") : KIND_WORDS[what] }),
+  );
 }
 
 /** Beside the selected node, or inside it where it is a goal node and `inside` is said. */
@@ -59,20 +64,24 @@ export function usualWhere(work: Pick<Work, "tree" | "selected">): readonly Drop
 }
 
 export function remove(work: Work): void {
-  const said = `${plain(work.called(work.selected))} was deleted.`;
+  const said = t("{node} was deleted.", { node: plain(work.called(work.selected)) });
   doIt(work, { do: "remove", path: work.selected }, said);
 }
 
 export function wrap(work: Work, kind: GoalKind): void {
-  doIt(work, { do: "wrap", path: work.selected, kind }, `${plain(work.called(work.selected))} is in ${KIND_WORDS[kind]} now.`);
+  doIt(
+    work,
+    { do: "wrap", path: work.selected, kind },
+    t("{node} is in {kind} now.", { node: plain(work.called(work.selected)), kind: KIND_WORDS[kind] }),
+  );
 }
 
 export function dissolve(work: Work): void {
-  doIt(work, { do: "dissolve", path: work.selected }, "The children are in its place now.");
+  doIt(work, { do: "dissolve", path: work.selected }, t("The children are in its place now."));
 }
 
 export function changeKind(work: Work, kind: GoalKind): void {
-  doIt(work, { do: "kind", path: work.selected, kind }, `It is ${KIND_WORDS[kind]} now.`);
+  doIt(work, { do: "kind", path: work.selected, kind }, t("It is {kind} now.", { kind: KIND_WORDS[kind] }));
 }
 
 export function fill(work: Work, values: PlainNode): void {
@@ -86,15 +95,16 @@ export function move(work: Work, direction: Direction): void {
 }
 
 const NOWHERE: Readonly<Record<Direction, string>> = {
-  up: "It is the first already.",
-  down: "It is the last already.",
-  out: "It is under the root already.",
-  in: "No goal node stands beside it to move it into.",
+  up: t("It is the first already."),
+  down: t("It is the last already."),
+  out: t("It is under the root already."),
+  in: t("No goal node stands beside it to move it into."),
 };
 
 export function drop(work: Work, path: string, at: Drop): void {
   const edit = droppedAt(work.tree, path, at);
-  if (edit !== null) doIt(work, edit, `${plain(work.called(path))} is ${placeSaid(work, at)} now.`);
+  if (edit !== null)
+    doIt(work, edit, t("{node} is {where} now.", { node: plain(work.called(path)), where: placeSaid(work, at) }));
 }
 
 export function placeSaid({ called }: Pick<Work, "called">, { path, where }: Drop): string {
@@ -102,12 +112,12 @@ export function placeSaid({ called }: Pick<Work, "called">, { path, where }: Dro
 }
 
 export function duplicate(work: Work): void {
-  insertAfter(work, selectedNode(work), "It is there twice now.");
+  insertAfter(work, selectedNode(work), t("It is there twice now."));
 }
 
 export function copy(work: Work): void {
   copied = selectedNode(work);
-  work.refuse(`${plain(work.called(work.selected))} was copied.`);
+  work.refuse(t("{node} was copied.", { node: plain(work.called(work.selected)) }));
 }
 
 export function cut(work: Work): void {
@@ -117,8 +127,8 @@ export function cut(work: Work): void {
 
 /** After the selected node; inside a root. */
 export function paste(work: Work): void {
-  if (copied === null) work.refuse("Nothing was copied yet.");
-  else insertAfter(work, copied, "It was put in.");
+  if (copied === null) work.refuse(t("Nothing was copied yet."));
+  else insertAfter(work, copied, t("It was put in."));
 }
 
 function insertAfter(work: Work, node: PlainNode, said: string): void {

@@ -8,9 +8,10 @@ import { DefinitionDrawing } from "../definition_drawing";
 import { drawnNodes } from "./drawn_nodes";
 import { LONGEST_TEXT, readTask } from "./task_source";
 import { TreeEditing } from "./tree_editing";
+import { t } from "../../words/words";
 import "./editing.css";
 
-const LABEL = "Drawing of this text";
+const LABEL = t("Drawing of this text");
 
 export function TreeSide({ editing }: { editing: Editing }) {
   const { text, says: source } = useRead(editing.text, readTask);
@@ -31,18 +32,18 @@ function AsItWas({ editing, last }: { editing: Editing; last: readonly TreeNode[
     return (
       <>
         <p class="small quiet">
-          {long ? "So long a text is changed as text only:" : "A tree in the flat form, or with aliases of what follows, is changed as text only:"}
+          {long ? t("So long a text is changed as text only:") : t("A tree in the flat form, or with aliases of what follows, is changed as text only:")}
         </p>
         <DefinitionDrawing definition={right} label={LABEL} />
       </>
     );
   }
   if (last === null && checked.definition === null) {
-    return <p class="quiet">The drawing comes as soon as the text has no mistakes.</p>;
+    return <p class="quiet">{t("The drawing comes as soon as the text has no mistakes.")}</p>;
   }
   return (
     <>
-      <p class="small quiet">As it was before the mistakes:</p>
+      <p class="small quiet">{t("As it was before the mistakes:")}</p>
       {last === null ? <DefinitionDrawing definition={checked.definition ?? {}} label={LABEL} /> : <TreeDrawing nodes={last} label={LABEL} />}
     </>
   );

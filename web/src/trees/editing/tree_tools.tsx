@@ -3,6 +3,7 @@ import type { ComponentChildren } from "preact";
 import { KIND_WORDS } from "../../tree/words";
 import type { Direction, Drop } from "./moves";
 import { GOAL_KINDS, type GoalKind } from "./plain_node";
+import { t } from "../../words/words";
 
 export type Where = Drop["where"];
 
@@ -26,32 +27,30 @@ export interface TreeToolsProps {
   onMove: (direction: Direction) => void;
 }
 
-const WHERES: Readonly<Record<Where, string>> = { inside: "inside it", before: "before it", after: "after it" };
+const WHERES: Readonly<Record<Where, string>> = { inside: t("inside it"), before: t("before it"), after: t("after it") };
 const DIRECTIONS: readonly (readonly [Direction, string, string])[] = [
-  ["up", "↑", "Move up"],
-  ["down", "↓", "Move down"],
-  ["out", "←", "Move out of its parent"],
-  ["in", "→", "Move into the goal node beside it"],
+  ["up", "↑", t("Move up")],
+  ["down", "↓", t("Move down")],
+  ["out", "←", t("Move out of its parent")],
+  ["in", "→", t("Move into the goal node beside it")],
 ];
 
 export function TreeTools(props: TreeToolsProps) {
   const { wheres, where, isRoot, isGoal } = props;
   return (
-    <div class="tree-tools" role="group" aria-label="Change the task tree">
-      <Group label="Undo and redo">
-        <Tool label="Undo" disabled={!props.canUndo} onPress={props.onUndo} />
-        <Tool label="Redo" disabled={!props.canRedo} onPress={props.onRedo} />
+    <div class="tree-tools" role="group" aria-label={t("Change the task tree")}>
+      <Group label={t("Undo and redo")}>
+        <Tool label={t("Undo")} disabled={!props.canUndo} onPress={props.onUndo} />
+        <Tool label={t("Redo")} disabled={!props.canRedo} onPress={props.onRedo} />
       </Group>
-      <Group label="Add">
-        <span class="tool-word" aria-hidden="true">
-          Add
-        </span>
-        <Tool label="Leaf" spoken="Add a leaf" onPress={() => props.onAdd("leaf")} />
+      <Group label={t("Add")}>
+        <span class="tool-word" aria-hidden="true">{t("Add")}</span>
+        <Tool label={t("Leaf")} spoken={t("Add a leaf")} onPress={() => props.onAdd("leaf")} />
         {GOAL_KINDS.map((kind) => (
-          <Tool key={kind} label={KIND_WORDS[kind]} spoken={`Add ${KIND_WORDS[kind]}`} onPress={() => props.onAdd(kind)} />
+          <Tool key={kind} label={KIND_WORDS[kind]} spoken={t("Add {kind}", { kind: KIND_WORDS[kind] })} onPress={() => props.onAdd(kind)} />
         ))}
         {wheres.length > 1 && (
-          <select class="tool" aria-label="Where to add" value={where} onChange={(event) => props.onWhere(event.currentTarget.value as Where)}>
+          <select class="tool" aria-label={t("Where to add")} value={where} onChange={(event) => props.onWhere(event.currentTarget.value as Where)}>
             {wheres.map((each) => (
               <option key={each} value={each}>
                 {WHERES[each]}
@@ -60,23 +59,21 @@ export function TreeTools(props: TreeToolsProps) {
           </select>
         )}
       </Group>
-      <Group label="Wrap">
-        <span class="tool-word" aria-hidden="true">
-          Wrap in
-        </span>
+      <Group label={t("Wrap")}>
+        <span class="tool-word" aria-hidden="true">{t("Wrap in")}</span>
         {GOAL_KINDS.map((kind) => (
-          <Tool key={kind} label={KIND_WORDS[kind]} spoken={`Wrap in ${KIND_WORDS[kind]}`} onPress={() => props.onWrap(kind)} />
+          <Tool key={kind} label={KIND_WORDS[kind]} spoken={t("Wrap in {kind}", { kind: KIND_WORDS[kind] })} onPress={() => props.onWrap(kind)} />
         ))}
-        {isGoal && !isRoot && <Tool label="Unwrap" spoken="Unwrap: its children take its place" onPress={props.onDissolve} />}
+        {isGoal && !isRoot && <Tool label={t("Unwrap")} spoken={t("Unwrap: its children take its place")} onPress={props.onDissolve} />}
       </Group>
-      <Group label="Move">
+      <Group label={t("Move")}>
         {DIRECTIONS.map(([direction, sign, spoken]) => (
           <Tool key={direction} label={sign} spoken={spoken} disabled={!props.canMove(direction)} onPress={() => props.onMove(direction)} />
         ))}
       </Group>
-      <Group label="Copy and delete">
-        <Tool label="Duplicate" disabled={isRoot} onPress={props.onDuplicate} />
-        <Tool label="Delete" disabled={isRoot} onPress={props.onRemove} />
+      <Group label={t("Copy and delete")}>
+        <Tool label={t("Duplicate")} disabled={isRoot} onPress={props.onDuplicate} />
+        <Tool label={t("Delete")} disabled={isRoot} onPress={props.onRemove} />
       </Group>
     </div>
   );

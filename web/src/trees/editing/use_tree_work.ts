@@ -8,6 +8,7 @@ import type { SceneNames } from "./new_nodes";
 import { parametersOf } from "./parameters";
 import type { TaskSource } from "./task_source";
 import type { Work } from "./tree_hands";
+import { t } from "../../words/words";
 
 export interface TreeWork {
   behaviors: readonly BehaviorView[] | null;
@@ -49,7 +50,7 @@ export function useTreeWork({ source, stale, nodes, selected, onText, onSelect }
     called,
     required: (behavior) => requiredBy(behaviors?.find(({ name }) => name === behavior)?.parameters),
     become: (text, path, told) => {
-      if (stale) return say("The drawing was not up to date yet: once more, please.");
+      if (stale) return say(t("The drawing was not up to date yet: once more, please."));
       onText(text);
       onSelect(path);
       if (inDrawing) toDrawing(path);

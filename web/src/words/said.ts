@@ -1,0 +1,100 @@
+// What the service and its robots say, in the reader's language. They say it in English, and of what they ask
+// they also say what it is made of; what they have sensed is known by its pattern.
+import type { WordedSentence, Wording } from "../wire/types";
+import { decimal, filled, type Words } from "./words";
+
+const REMEMBERED = 2_000;
+
+const texts = new Map<string, string>();
+const wordings = new Map<string, readonly WordedSentence[]>();
+let patterns: readonly { pattern: RegExp; text: string }[] = [];
+
+/** Take over `sentences` by their English text with fields, and `clauses`, which are also known filled in. */
+export function takeSentences(sentences: Words, clauses: Words): void {
+  texts.clear();
+  for (const [key, text] of Object.entries({ ...sentences, ...clauses })) texts.set(key, String(text));
+  patterns = Object.entries(clauses).map(([key, text]) => ({ pattern: patternOf(key), text: String(text) }));
+}
+
+/** Remember what texts are made of; what was not heard of for long is forgotten. */
+export function learn(more: readonly Wording[]): void {
+  if (texts.size === 0) return;
+  for (const { text, sentences } of more) {
+    if (sentences.length === 0) continue;
+    wordings.delete(text);
+    wordings.set(text, sentences);
+  }
+  for (const [oldest] of wordings) {
+    if (wordings.size <= REMEMBERED) break;
+    wordings.delete(oldest);
+  }
+}
+
+/** An English text in the reader's language; null where nobody has put it into that. */
+export function translated(text: string): string | null {
+  if (texts.size === 0) return null;
+  const sentences = wordings.get(text);
+  return sentences === undefined ? phrase(text) : all(sentences);
+}
+
+/** The same, and the English one where there is no other. */
+export function said(text: string): string {
+  return translated(text) ?? text;
+}
+
+/** A text put together of sentences; null where one of them is only there in English. */
+function all(sentences: readonly WordedSentence[]): string | null {
+  const found: string[] = [];
+  for (const each of sentences) {
+    const text = sentence(each);
+    if (text === null) return null;
+    found.push(capitalized(text));
+  }
+  return found.join(" ");
+}
+
+function sentence({ key, args }: WordedSentence): string | null {
+  const template = texts.get(key);
+  if (template === undefined) return Object.keys(args).length === 0 ? phrase(key) : null;
+  const values: Record<string, string> = {};
+  for (const [name, value] of Object.entries(args)) {
+    values[name] = typeof value === "string" ? value : (value ?? []).map((each) => sentence(each) ?? filled(each.key)).join(" ");
+  }
+  return filled(template, values);
+}
+
+/** A text without known parts: itself a key, or what a pattern fits. */
+function phrase(text: string): string | null {
+  const whole = texts.get(text);
+  if (whole !== undefined) return whole;
+  for (const { pattern, text: template } of patterns) {
+    const groups = pattern.exec(text)?.groups;
+    if (groups !== undefined) return filled(template, mapped(groups));
+  }
+  return null;
+}
+
+/** `rest` is a clause in turn; of what else fills a field only numbers are written otherwise. */
+function mapped(groups: Readonly<Record<string, string>>): Record<string, string> {
+  return Object.fromEntries(
+    Object.entries(groups).map(([name, value]) => {
+      if (name === "rest") return [name, phrase(value) ?? value];
+      const decimals = /^-?\d+\.(\d+)$/.exec(value)?.[1];
+      return [name, decimals === undefined ? value : decimal(Number(value), decimals.length)];
+    }),
+  );
+}
+
+/** What fills a field is short and no clause, but for `rest`; a part may have its article. */
+function patternOf(key: string): RegExp {
+  const escaped = key.replace(/[.*+?^$()|[\]\\]/g, "\\$&");
+  const fields = escaped.replace(/\{(\w+)\}/g, (_, name: string) => {
+    if (name === "rest") return "(?<rest>.+)";
+    return `${name === "part" ? "(?:the )?" : ""}(?<${name}>[^,;:?!]{1,80}?)`;
+  });
+  return new RegExp(`^${fields}$`, "i");
+}
+
+function capitalized(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
