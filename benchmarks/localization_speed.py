@@ -27,6 +27,7 @@ from mend.localization.logs.log import LogStep
 from mend.localization.methods import METHODS, warm_up
 from mend.localization.pose import relative
 from mend.maps.ray_cast import cast
+from mend.maps.segment_grid import cast_rays, segment_grid
 from mend.maps.vector_map import VectorMap
 from mend.maps.vector_map_file import read_vector_map
 
@@ -114,13 +115,23 @@ def main() -> None:
     made_up = scene(vector_map, settings, 1)
     x, y = made_up.truth[0, :2]
     angles = np.linspace(-np.pi, np.pi, RAYS, endpoint=False)
-    off = np.abs(cast(segments, x, y, angles, RANGE_M)[0] - plain_cast(segments, x, y, angles))
-    fast = median_ms(lambda: cast(segments, x, y, angles, RANGE_M), 100)
+    expected = plain_cast(segments, x, y, angles)
     plain = median_ms(lambda: plain_cast(segments, x, y, angles), 5)
-    print(
-        f"{RAYS} rays on {len(segments)} segments: {fast:.3f} ms, every ray on every segment "
-        f"(numpy) {plain:.1f} ms: {plain / fast:.0f} x; largest difference {off.max():.1e} m"
-    )
+    grid, sensor = segment_grid(segments), np.array([x, y, 0.0])
+    ranges, seen_at = np.empty(RAYS), np.empty(RAYS, dtype=np.int64)
+
+    def over_grid() -> Matrix:
+        cast_rays(grid, sensor, angles, RANGE_M, ranges, seen_at)
+        return ranges
+
+    def swept() -> Matrix:
+        return cast(segments, x, y, angles, RANGE_M)[0]
+
+    print(f"{RAYS} rays on {len(segments)} segments: each on each (numpy) {plain:.1f} ms")
+    for name, rays in (("sweep", swept), ("over a grid", over_grid)):
+        off_m = np.abs(rays() - expected).max()
+        fast = median_ms(rays, 100)
+        print(f"  {name}: {fast:.3f} ms, {plain / fast:.0f} x; largest difference {off_m:.1e} m")
     process = psutil.Process()
     for method, make in METHODS.items():
         warm_up(method)

@@ -5,20 +5,21 @@ first wall, something unmapped before it, or random. What did not return says no
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mend.localization.pose import Poses, compose
 from mend.localization.scan import Scan
-from mend.maps.ray_cast import cast
+from mend.maps.compiled import compiled
+from mend.maps.segment_grid import cast_rays, segment_grid
 from mend.maps.vector_map import VectorMap
 
 Matrix = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class BeamModelParameters:
+class BeamModelParameters(NamedTuple):
     """Weights as for a floor on which half of what is seen is on no map."""
 
     hit_share: float = 0.6
@@ -49,16 +50,38 @@ class Beams:
 
 def log_densities(ranges: Matrix, expected: Matrix, parameters: BeamModelParameters) -> Matrix:
     """Of ranges, where the map's first wall is expected at others (metres, alike in shape)."""
-    its = parameters
-    deviation = (ranges - expected) / its.hit_deviation_m
-    density = (
-        its.hit_share * np.exp(-0.5 * deviation**2) / (its.hit_deviation_m * np.sqrt(2.0 * np.pi))
+    ranges, expected = np.broadcast_arrays(ranges, expected)
+    found = np.empty(ranges.shape)
+    weigh_ranges(
+        np.ascontiguousarray(ranges).reshape(-1),
+        np.ascontiguousarray(expected).reshape(-1),
+        parameters,
+        found.reshape(-1),
     )
-    decay = its.short_decay_per_m
-    before = its.short_share * decay * np.exp(-decay * ranges)
-    before = before / np.maximum(1.0 - np.exp(-decay * expected), 1e-6)
-    density = density + np.where(ranges < expected, before, 0.0)
-    return np.asarray(np.log(density + its.random_share / its.max_range_m))
+    return found
+
+
+@compiled
+def weigh_ranges(
+    ranges: Matrix, expected: Matrix, parameters: BeamModelParameters, found: Matrix
+) -> None:
+    """The kernel of `log_densities`."""
+    for index in range(ranges.shape[0]):
+        found[index] = log_density(ranges[index], expected[index], parameters)
+
+
+@compiled
+def log_density(range_m: float, expected_m: float, parameters: BeamModelParameters) -> float:
+    """Of one range, where the map's first wall is expected at another."""
+    its = parameters
+    deviation = (range_m - expected_m) / its.hit_deviation_m
+    hit = np.exp(-0.5 * deviation**2) / (its.hit_deviation_m * np.sqrt(2.0 * np.pi))
+    density = its.hit_share * hit + its.random_share / its.max_range_m
+    if range_m < expected_m:
+        decay = its.short_decay_per_m
+        short = decay * np.exp(-decay * range_m) / max(1.0 - np.exp(-decay * expected_m), 1e-6)
+        density += its.short_share * short
+    return float(np.log(density))
 
 
 def spread(count: int, most: int) -> NDArray[np.int64]:
@@ -72,7 +95,7 @@ class BeamModel:
     def __init__(
         self, vector_map: VectorMap, parameters: BeamModelParameters | None = None
     ) -> None:
-        self._segments = vector_map.segments
+        self._grid = segment_grid(vector_map.segments)
         self._parameters = parameters or BeamModelParameters()
 
     def beams_of(self, scan: Scan) -> Beams:
@@ -98,12 +121,9 @@ class BeamModel:
         return float((away < self._parameters.matched_within_m).mean())
 
     def _expected(self, pose: Poses, beams: Beams) -> Matrix:
-        x, y, _ = compose(pose, beams.mount)
-        ranges, _ = cast(
-            self._segments,
-            float(x),
-            float(y),
-            beams.bearings + pose[2],
-            self._parameters.max_range_m,
-        )
+        sensor = compose(pose, beams.mount)
+        sensor[2] = pose[2]
+        ranges = np.empty(len(beams.bearings))
+        seen = np.empty(len(beams.bearings), dtype=np.int64)
+        cast_rays(self._grid, sensor, beams.bearings, self._parameters.max_range_m, ranges, seen)
         return ranges

@@ -62,7 +62,7 @@ class SearchingLocalizer(Localizer, Protocol):
     """A localizer that, lost, says where on its map the robot may be, and takes what it is told."""
 
     def search_next(self) -> None:
-        """Let the next update of a robot that is lost, or in doubt, search the map at once."""
+        """Let the next update of a robot that is lost, or in doubt, search the map to the end."""
         ...
 
     def open_places(self) -> Sequence[Poses]:

@@ -7,7 +7,8 @@ from mend.localization.cgr.parameters import CgrParameters
 from mend.localization.points import ScanPoints
 from mend.localization.pose import Poses
 from mend.maps.compiled import compiled
-from mend.maps.ray_cast import NOTHING, cast_sorted
+from mend.maps.ray_cast import NOTHING
+from mend.maps.segment_grid import SegmentGrid, cast_ray, segment_grid
 
 Matrix = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -18,7 +19,7 @@ class Refinement:
 
     def __init__(self, segments: Matrix, parameters: CgrParameters) -> None:
         its = parameters
-        self._segments = segments
+        self._grid = segment_grid(segments)
         self._lines = lines_of(segments)
         self._gates = np.array(
             [its.attracted_within_m, np.cos(its.attracted_within_rad), its.margin_m]
@@ -37,7 +38,7 @@ class Refinement:
         refined = particles.copy()
         before, after = np.empty(len(particles)), np.empty(len(particles))
         refine(
-            self._segments,
+            self._grid,
             self._lines,
             points.points,
             points.normals,
@@ -58,7 +59,7 @@ class Refinement:
     def distances(self, pose: Poses, points: ScanPoints, sensor: Poses, reach_m: float) -> Matrix:
         """Metres from each point to the line that it was seen on; infinite where there is none."""
         seen = np.empty(len(points), dtype=np.int64)
-        look(self._segments, pose, points.points, sensor[:2], reach_m, seen)
+        look(self._grid, pose, points.points, sensor[:2], reach_m, seen)
         away = np.empty(len(points))
         measure(self._lines, pose, points.points, seen, self._gates[2], away)
         return away
@@ -73,7 +74,7 @@ def lines_of(segments: Matrix) -> Matrix:
 
 @compiled
 def refine(
-    segments: Matrix,
+    grid: SegmentGrid,
     lines: Matrix,
     points: Matrix,
     normals: Matrix,
@@ -94,7 +95,7 @@ def refine(
     away = np.empty(points.shape[0])
     for number in range(particles.shape[0]):
         pose = particles[number]
-        look(segments, pose, points, sensor, reach_m, seen)
+        look(grid, pose, points, sensor, reach_m, seen)
         measure(lines, pose, points, seen, gates[2], away)
         before[number] = _log_likelihood(away, deviation, surprise)
         for _ in range(steps):
@@ -106,7 +107,7 @@ def refine(
 
 @compiled
 def look(
-    segments: Matrix,
+    grid: SegmentGrid,
     pose: Poses,
     points: Matrix,
     sensor: Matrix,
@@ -114,20 +115,14 @@ def look(
     seen: Indices,
 ) -> None:
     """Which segment is seen in the direction of each point, from the sensor at a pose."""
-    count = points.shape[0]
     cosine, sine = np.cos(pose[2]), np.sin(pose[2])
     x = pose[0] + cosine * sensor[0] - sine * sensor[1]
     y = pose[1] + sine * sensor[0] + cosine * sensor[1]
-    angles = np.empty(count)
-    for index in range(count):
-        bearing = np.arctan2(points[index, 1] - sensor[1], points[index, 0] - sensor[0])
-        angles[index] = (bearing + pose[2]) % (2.0 * np.pi)
-    order = np.argsort(angles)
-    ranges = np.empty(count)
-    hit = np.empty(count, dtype=np.int64)
-    cast_sorted(segments, x, y, angles[order], reach_m, ranges, hit)
-    for rank in range(count):
-        seen[order[rank]] = hit[rank]
+    for index in range(points.shape[0]):
+        dx, dy = points[index, 0] - sensor[0], points[index, 1] - sensor[1]
+        away = max(np.hypot(dx, dy), 1e-9)
+        c, s = (cosine * dx - sine * dy) / away, (sine * dx + cosine * dy) / away
+        seen[index] = cast_ray(grid, x, y, c, s, reach_m)[1]
 
 
 @compiled

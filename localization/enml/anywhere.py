@@ -1,19 +1,29 @@
 """How likely a scan is for a robot that may be anywhere on the map."""
 
-from copy import copy
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mend.localization.beam_model import BeamModelParameters, log_densities
+from mend.localization.beam_model import BeamModelParameters, log_densities, spread
+from mend.localization.enml.classification import look_at
 from mend.localization.enml.global_search import Region
+from mend.localization.enml.looks import Looks
 from mend.localization.enml.problem import Floats, Indices
-from mend.localization.enml.visible import Visible
 from mend.maps.compiled import compiled
+from mend.maps.segment_grid import SegmentGrid
 
-Bins = NDArray[np.int32]
+Bins = NDArray[np.int16]
 Logs = NDArray[np.float32]
 
+MODEL = BeamModelParameters(
+    hit_share=0.4,
+    short_share=0.59,
+    random_share=0.01,
+    hit_deviation_m=0.1,
+    short_decay_per_m=0.05,
+)
+"""Places are told apart by some centimetres, and by the walls that they would be seen through."""
 _PLACES = 512
 """Twice as many change the logarithm by 0.3 in the median on the logs that were looked into."""
 _BEARINGS = 180
@@ -29,29 +39,21 @@ class Anywhere:
     What the map shows from each place is cast once; a scan is then looked up.
     """
 
-    def __init__(self, visible: Visible, region: Region, model: BeamModelParameters) -> None:
+    def __init__(
+        self, grid: SegmentGrid, region: Region, model: BeamModelParameters = MODEL
+    ) -> None:
         bearings = (np.arange(_BEARINGS) + 0.5) * 2.0 * np.pi / _BEARINGS
         corner = np.array([region.x_min, region.y_min])
         size = np.array([region.x_max, region.y_max]) - corner
         places = corner + size * np.mod(0.5 + np.outer(np.arange(_PLACES), _STEPS), 1.0)
-        self._expected = np.array(
-            [
-                _bins(visible.cast(np.append(each, 0.0), bearings, model.max_range_m), model)
-                for each in places
-            ]
-        )
-        self._use(model)
-
-    def by(self, model: BeamModelParameters) -> "Anywhere":
-        """The same places, where scans are weighed by another beam model with the same range."""
-        other = copy(self)
-        other._use(model)
-        return other
-
-    def _use(self, model: BeamModelParameters) -> None:
+        seen = [
+            _bins(look_at(grid, np.append(each, 0.0), bearings, model.max_range_m)[0], model)
+            for each in places
+        ]
+        self._expected = np.tile(seen, 2)
         self.model = model
         middles = _CELL_M * (np.arange(round(model.max_range_m / _CELL_M), dtype=np.float64) + 0.5)
-        self._logs: Logs = log_densities(middles[None, :], middles[:, None], model).astype(
+        self._logs: Logs = log_densities(middles[:, None], middles[None, :], model).astype(
             np.float32
         )
 
@@ -63,31 +65,37 @@ class Anywhere:
         logs = score_anywhere(self._expected, self._logs, columns, _bins(ranges, model), _HEADINGS)
         logs *= model.trust * model.beams / max(len(ranges), 1)
         most = float(logs.max())
-        return most + float(np.log(np.exp(logs - most).mean()))
+        return most + float(np.log(np.exp(logs - most).mean(dtype=np.float64)))
+
+    def mean_log_likelihood(self, looks: Looks) -> float:
+        """Of some scans, per scan."""
+        logs = []
+        for first, last in pairwise(looks.starts):
+            used = first + spread(last - first, self.model.beams)
+            logs.append(self.log_likelihood(looks.ranges_m[used], looks.bearings[used]))
+        return float(np.mean(logs))
 
 
 def _bins(ranges: Floats, model: BeamModelParameters) -> Bins:
     last = round(model.max_range_m / _CELL_M) - 1
-    return np.minimum(ranges / _CELL_M, last).astype(np.int32)
+    return np.minimum(ranges / _CELL_M, last).astype(np.int16)
 
 
-def _score_anywhere(
+@compiled
+def score_anywhere(
     expected: Bins, logs: Logs, columns: Indices, ranges: Bins, headings: int
-) -> Floats:
-    """The sum of log densities at each place and heading, places by headings."""
-    places, bearings = expected.shape
-    scores = np.zeros((places, headings))
+) -> Logs:
+    """The sum of log densities at each place and heading, places by headings.
+
+    `expected` is once around, and as much again; of `logs` a row is for one measured range.
+    """
+    places, bearings = expected.shape[0], expected.shape[1] // 2
+    turn = bearings // headings
+    scores = np.zeros((places, headings), dtype=np.float32)
     for place in range(places):
-        for heading in range(headings):
-            turned = heading * bearings // headings
-            total = 0.0
-            for beam in range(len(columns)):
-                column = columns[beam] + turned
-                if column >= bearings:
-                    column -= bearings
-                total += logs[expected[place, column], ranges[beam]]
-            scores[place, heading] = total
+        here, sums = expected[place], scores[place]
+        for beam in range(columns.shape[0]):
+            of_range = logs[ranges[beam]]
+            for heading in range(headings):
+                sums[heading] += of_range[here[columns[beam] + heading * turn]]
     return scores
-
-
-score_anywhere = compiled(_score_anywhere)

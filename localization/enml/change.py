@@ -58,7 +58,7 @@ class Strangeness:
         beyond = strange + its.familiar_share - its.strange_per_m * apart
         speaks = its.strange_counts * beyond / (its.strange_spread_m + apart) ** 2
         self._familiar = earlier.identity if speaks > 0.0 else None
-        return max(speaks, -its.familiar_tells_at_most)
+        return speaks
 
     def _compared_with(self, episode: Episode) -> int | None:
         """The last familiar pose, unless it is too far back, or else the last that saw enough."""

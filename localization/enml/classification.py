@@ -3,14 +3,13 @@
 from math import cos
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import LtfMatches, PoseNode
 from mend.localization.enml.problem import Floats, Indices
 from mend.localization.pose import Poses, compose, transform, turn, wrap_angle
 from mend.maps.compiled import compiled
-from mend.maps.ray_cast import cast_sorted
+from mend.maps.segment_grid import SegmentGrid, cast_rays
 
 _NEIGHBORS = 8
 """A point may lie on a line that the map shows up to so many points beside it: where walls end, a
@@ -20,9 +19,8 @@ small error of the heading changes what is seen."""
 class LongTermFeatures:
     """Finds the long-term features of poses, again only once a pose has really moved."""
 
-    def __init__(self, segments: Floats, max_range_m: float, parameters: EnmlParameters) -> None:
-        self._nearby = _Nearby(segments, max_range_m)
-        self._max_range_m = max_range_m
+    def __init__(self, grid: SegmentGrid, parameters: EnmlParameters) -> None:
+        self._grid = grid
         self._parameters = parameters
         self._cos_max_angle = cos(parameters.ltf_max_angle_rad)
 
@@ -30,11 +28,13 @@ class LongTermFeatures:
         """Bring the node's long-term features up to a pose; whether that changed which they are."""
         if self._settled(node, pose):
             return False
-        segments = self._nearby.around(pose)
-        expected_m, seen = self._cast(node, pose, segments)
+        sensor = compose(pose, node.sensor_offset)
+        expected_m, seen = look_at(self._grid, sensor, node.bearings, node.reach_m)
         points = transform(pose, node.scan_points.points)
         normals = turn(float(pose[2]), node.scan_points.normals)
-        rows, lines = lines_of(segments, points, normals, seen, node.gate_m, self._cos_max_angle)
+        rows, lines = lines_of(
+            self._grid.segments, points, normals, seen, node.gate_m, self._cos_max_angle
+        )
         is_ltf = np.zeros(len(points), dtype=np.bool_)
         is_ltf[rows] = True
         changed = not np.array_equal(is_ltf, node.is_ltf)
@@ -53,43 +53,14 @@ class LongTermFeatures:
             moved_m < self._parameters.settled_m and turned_rad < self._parameters.settled_rad
         )
 
-    def _cast(self, node: PoseNode, pose: Poses, segments: Floats) -> tuple[Floats, Indices]:
-        sensor = compose(pose, node.sensor_offset)
-        reach_m = min(self._max_range_m, node.reach_m)
-        return cast_bearings(segments, sensor, node.bearings, reach_m)
 
-
-def cast_bearings(
-    segments: Floats, sensor: Poses, bearings: Floats, max_range_m: float
+def look_at(
+    grid: SegmentGrid, sensor: Poses, bearings: Floats, max_range_m: float
 ) -> tuple[Floats, Indices]:
-    """Expected range and segment along ascending bearings from a sensor's pose."""
+    """Expected range and segment along bearings from a sensor's pose."""
     ranges_m, seen = np.empty(len(bearings)), np.empty(len(bearings), dtype=np.int64)
-    cast_around(segments, sensor, bearings, max_range_m, ranges_m, seen)
+    cast_rays(grid, sensor, bearings, max_range_m, ranges_m, seen)
     return ranges_m, seen
-
-
-@compiled
-def cast_around(
-    segments: Floats,
-    sensor: Floats,
-    bearings: Floats,
-    max_range_m: float,
-    ranges_m: Floats,
-    seen: Indices,
-) -> None:
-    """The kernel of `cast_bearings`; results go to the last two."""
-    count = bearings.shape[0]
-    if count == 0:
-        return
-    angles = np.mod(bearings + sensor[2], 2.0 * np.pi)
-    # They ascend from the smallest on, once around.
-    first = np.argmin(angles)
-    ascending = np.concatenate((angles[first:], angles[:first]))
-    found_m, found = np.empty(count), np.empty(count, dtype=np.int64)
-    cast_sorted(segments, sensor[0], sensor[1], ascending, max_range_m, found_m, found)
-    for index in range(count):
-        ranges_m[(first + index) % count] = found_m[index]
-        seen[(first + index) % count] = found[index]
 
 
 def lines_of(
@@ -109,28 +80,6 @@ def lines_of(
     match_lines(segments, points, normals, seen, _NEIGHBORS, gate_m, cos_max_angle, found, lines)
     rows = np.flatnonzero(found >= 0)
     return rows, lines[rows]
-
-
-class _Nearby:
-    """The segments that matter around a pose; chosen anew when the robot has left the place."""
-
-    _MARGIN_M = 5.0
-
-    def __init__(self, segments: Floats, max_range_m: float) -> None:
-        self._segments = segments
-        self._reach_m = max_range_m + self._MARGIN_M
-        self._center: NDArray[np.float64] | None = None
-        self._chosen = segments
-
-    def around(self, pose: Poses) -> Floats:
-        center = self._center
-        if center is None or np.hypot(*(pose[:2] - center)) > self._MARGIN_M:
-            self._center = pose[:2].copy()
-            low, high = pose[:2] - self._reach_m, pose[:2] + self._reach_m
-            ends = self._segments.reshape(-1, 2, 2)
-            near = (ends.max(axis=1) >= low).all(axis=1) & (ends.min(axis=1) <= high).all(axis=1)
-            self._chosen = np.ascontiguousarray(self._segments[near])
-        return self._chosen
 
 
 @compiled

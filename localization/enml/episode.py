@@ -36,6 +36,14 @@ class Episode:
     def __len__(self) -> int:
         return len(self.nodes)
 
+    def off_map(self, prior_whitening: Floats) -> "Episode":
+        """The same scans, wherever they were taken."""
+        other = Episode(self._parameters, self.poses[0].copy(), prior_whitening)
+        other._identities = count(self.nodes[-1].identity + 1)
+        other.nodes = [node.off_map() for node in self.nodes]
+        other.poses = self.poses.copy()
+        return other
+
     def extend(self, step: Poses, scan: Scan, scan_points: ScanPoints) -> None:
         """Add what was seen after a motion, in place of the newest pose if that is too near."""
         if not self.nodes:
@@ -60,17 +68,6 @@ class Episode:
             or float(np.hypot(*travel.motion[:2])) >= self._parameters.min_translation_m
             or travel.turned_rad >= self._parameters.min_rotation_rad
         )
-
-    def keep_newest(self) -> None:
-        """Let go of all poses but the newest: they were elsewhere."""
-        self.nodes = self.nodes[-1:]
-        self.poses = self.poses[-1:]
-
-    def leave_map(self, prior_whitening: Floats) -> None:
-        """Believe the place of the poses no more than a new prior says, and nothing of the map."""
-        self.prior, self.prior_whitening = self.poses[0].copy(), prior_whitening
-        for node in self.nodes:
-            node.take_off_map()
 
     def move(self, newest: Poses, prior_whitening: Floats) -> None:
         """Shift all poses alike, so that the newest comes to a place; all are open to doubt."""

@@ -5,13 +5,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from mend.localization.beam_model import BeamModelParameters, log_densities, spread
+from mend.localization.beam_model import log_densities, spread
 from mend.localization.distance_field import distance_field
 from mend.localization.enml import normal_equations
 from mend.localization.enml.alignment import Aligner
 from mend.localization.enml.anywhere import Anywhere
 from mend.localization.enml.change import LEAST_RETURNS, Strangeness
-from mend.localization.enml.classification import LongTermFeatures
+from mend.localization.enml.classification import LongTermFeatures, look_at
 from mend.localization.enml.global_search import Region, same_place
 from mend.localization.enml.lost_measure import LostMeasure
 from mend.localization.enml.parameters import EnmlParameters
@@ -21,11 +21,12 @@ from mend.localization.enml.recovery import MayBeAt, Recovery
 from mend.localization.enml.sight import Sight
 from mend.localization.enml.solver import Linearize
 from mend.localization.enml.track import By, Track
-from mend.localization.enml.visible import Visible
 from mend.localization.localizer import Estimate, PointClass
 from mend.localization.points import DEFAULT_MAX_RANGE_M, ScanPoints
-from mend.localization.pose import Poses, wrap_angle
+from mend.localization.pose import Poses, compose, wrap_angle
 from mend.localization.scan import Scan, ScanStream
+from mend.maps.ray_cast import NOTHING
+from mend.maps.segment_grid import segment_grid
 from mend.maps.vector_map import VectorMap
 
 _FIELD_CELL_M = 0.1
@@ -54,20 +55,20 @@ class EnmlLocalizer:
     ) -> None:
         """`may_be_at`: no search finds the robot where it cannot be, as outside of a building."""
         self._parameters = parameters or EnmlParameters()
+        self._grid = grid = segment_grid(vector_map.segments)
         field = distance_field(vector_map, _FIELD_CELL_M, _FIELD_REACH_M)
         self._new_track = partial(
             Track,
             parameters=self._parameters,
             aligner=Aligner(field, self._parameters),
-            long_term=LongTermFeatures(vector_map.segments, DEFAULT_MAX_RANGE_M, self._parameters),
+            long_term=LongTermFeatures(grid, self._parameters),
             linearize=linearize,
         )
         everywhere = Region(*vector_map.bounds)
-        visible = Visible(vector_map.segments, DEFAULT_MAX_RANGE_M)
-        self._is_empty = visible.is_empty
-        self._anywhere = Anywhere(visible, everywhere, BeamModelParameters())
+        self._is_empty = not len(vector_map)
+        self._anywhere = Anywhere(grid, everywhere)
         self._recovery = Recovery(
-            everywhere, field, visible, self._anywhere, self._parameters, may_be_at
+            everywhere, field, grid, self._anywhere, self._parameters, may_be_at
         )
         self._measure = LostMeasure(self._parameters)
         self.reset(np.zeros(3) if start is None else start)
@@ -94,6 +95,7 @@ class EnmlLocalizer:
         self._stray: Track | None = None
         self._seen: tuple[Scan, ScanPoints] | None = None
         self._since_lost_m = 0.0
+        self._drifted = self._search_at_once = False
 
     @property
     def episode_poses(self) -> Floats:
@@ -101,8 +103,8 @@ class EnmlLocalizer:
         return self._track.episode.poses.copy()
 
     def search_next(self) -> None:
-        """Let the next update of a robot that is lost, or in doubt, search the map at once."""
-        self._searched_m = np.inf
+        """Let the next update of a robot that is lost, or in doubt, search the map to the end."""
+        self._search_at_once = True
 
     def open_places(self) -> list[Poses]:
         """Where the robot may be by what it has seen since it was lost, the likeliest first."""
@@ -114,7 +116,7 @@ class EnmlLocalizer:
     def get_lost(self) -> None:
         """Where the robot is believed to be is believed no more, until a search finds a place."""
         if not self._is_lost:
-            self._lose()
+            self._lose(drifted=False)
         self._track, self._stray = self._unplaced, None
 
     def take(self, place: Poses) -> None:
@@ -141,6 +143,7 @@ class EnmlLocalizer:
         self._weigh_place()
         if self._is_lost or self._probation_m > 0.0:
             covariance = self._look_for_place(covariance)
+        self._search_at_once = False
         return self._estimate(covariance)
 
     @property
@@ -177,43 +180,59 @@ class EnmlLocalizer:
         # Who is lost begins anew only for what is sure, as a look at all since then is worth much.
         within_m = self._parameters.news_after_m if self._is_lost else np.inf
         strange = self._strangeness.weigh(episode, within_m)
-        against = strange
+        its = self._parameters
+        elsewhere = 0.0
         if not self._is_lost:
             place = self._against_place(episode.nodes[-1])
-            against += self._parameters.map_counts * place
+            elsewhere = its.map_counts * (place - its.map_misleads)
         # Whoever stands may be carried, too: a strange scan is news, however far it drove.
-        least_m = self._parameters.news_after_m if strange > 0.0 else 0.0
-        self._measure.weigh(max(self._unweighed, least_m), against)
+        least_m = its.news_after_m if strange > 0.0 else 0.0
+        self._measure.weigh(max(self._unweighed, least_m), strange, elsewhere)
         self._unweighed = 0.0
-        if self._measure.probability > self._parameters.lost_above:
-            self._lose()
+        if self._measure.probability > its.lost_above:
+            self._lose(drifted=strange <= 0.0)
 
     def _against_place(self, node: PoseNode) -> float:
-        """How much likelier a scan is anywhere on the map than where the robot is followed."""
+        """How much likelier a scan is anywhere on the map than where the robot is followed.
+
+        Infinitely, where the map shows nothing at all: who is off the map is not there.
+        """
         model = self._anywhere.model
         used = spread(len(node.ranges_m), model.beams)
+        bearings = node.bearings[used]
+        if (node.expected_m >= node.reach_m).all():
+            sensor = compose(self._track.pose, node.sensor_offset)
+            if (look_at(self._grid, sensor, bearings, DEFAULT_MAX_RANGE_M)[1] == NOTHING).all():
+                return np.inf
         here = log_densities(node.ranges_m[used], node.expected_m[used], model).mean()
         anywhere = self._anywhere.log_likelihood(
-            node.ranges_m[used], node.bearings[used] + node.sensor_offset[2]
+            node.ranges_m[used], bearings + node.sensor_offset[2]
         )
         return anywhere - model.trust * model.beams * float(here)
 
-    def _lose(self) -> None:
+    def _lose(self, *, drifted: bool) -> None:
         """Doubt the place: what is seen from now on may belong elsewhere.
+
+        Where it has drifted off, rather than been carried, that holds for the last metres, too.
 
         A place on probation that is lost was never the right one.
         """
         if self._probation_m <= 0.0:
             self._recovery.forget()
             self._since_lost_m = 0.0
+        self._recovery.stop()
         unplaced = self._by_itself()
+        self._drifted = drifted
+        if drifted:
+            unplaced.go_by_itself(self._track.episode, np.diag(_LOST_STD**2))
         if self._track.by is By.ITSELF:
             self._track = unplaced
         else:
             self._stray = unplaced
         self._measure.begin()
         self._strangeness = Strangeness(self._parameters)
-        self._probation_m = self._searched_m = 0.0
+        self._probation_m = 0.0
+        self._searched_m = np.inf if drifted else 0.0
 
     def _by_itself(self) -> Track:
         """What begins with the newest scan, and nothing before it."""
@@ -224,12 +243,16 @@ class EnmlLocalizer:
 
     def _look_for_place(self, covariance: Floats) -> Floats:
         """Search the map every so often; take the episode to where it clearly belongs."""
-        if self._searched_m < self._parameters.recovery_every_m:
-            return covariance
-        self._searched_m = 0.0
-        track = self._track
-        followed = track.episode if track.by is By.MAP else None
-        found = self._recovery.search(self._unplaced.episode, followed, self._since_lost_m)
+        track, recovery = self._track, self._recovery
+        at_once = self._search_at_once
+        due = self._searched_m >= self._parameters.recovery_every_m
+        if at_once or (due and not recovery.is_searching):
+            self._searched_m = 0.0
+            followed = track.episode if track.by is By.MAP else None
+            recovery.begin(
+                self._unplaced.episode, followed, self._since_lost_m, drifted=self._drifted
+            )
+        found = recovery.go_on(to_its_end=at_once)
         if found is None or (not self._is_lost and same_place(found.pose, track.pose)):
             return covariance
         moved = self._believe(found.pose)

@@ -13,28 +13,40 @@ _MOST_ODDS = 1e6
 
 
 class LostMeasure:
-    """The probability that the robot has been carried, scan by scan."""
+    """The probability that the robot has been carried, or drifted off, scan by scan.
+
+    That a scan looks familiar speaks against having been carried since the one that it is compared
+    with, and says nothing of before: who was carried earlier sees the same things again, too.
+    """
 
     def __init__(self, parameters: EnmlParameters) -> None:
         self._parameters = parameters
-        self._odds = 0.0
+        self.begin()
 
     @property
     def probability(self) -> float:
         """From 0 (where it is followed) to 1 (elsewhere)."""
-        return self._odds / (1.0 + self._odds)
+        odds = self._before + self._since
+        return odds / (1.0 + odds)
 
     def begin(self, probability: float = 0.0) -> None:
         """Anew, with a probability below 1 that the place is not the right one."""
-        self._odds = probability / (1.0 - probability)
+        self._before = probability / (1.0 - probability)
+        self._since = 0.0
 
-    def weigh(self, driven_m: float, against: float) -> None:
-        """One more scan, after driving so far: `against` is the log-likelihood ratio.
+    def weigh(self, driven_m: float, strange: float, elsewhere: float) -> None:
+        """One more scan, after driving so far: log-likelihood ratios of what speaks against here.
 
+        `strange`: what it shows, beside the last familiar scan; `elsewhere`: what the map shows.
         Scans from hardly different places say nearly the same again, and count by how far apart
         they are; none counts for more than the parameters say.
         """
         its = self._parameters
-        told = min(max(against, -its.scan_tells_at_most), its.scan_tells_at_most)
-        told *= min(driven_m / its.news_after_m, 1.0)
-        self._odds = min((self._odds + its.carried_per_m * driven_m) * exp(told), _MOST_ODDS)
+        news = min(driven_m / its.news_after_m, 1.0)
+        self._since += its.carried_per_m * driven_m
+        self._since *= exp(news * max(min(strange, its.tells_at_most), -its.familiar_tells_at_most))
+        if strange <= 0.0:
+            self._before, self._since = self._before + self._since, 0.0
+        told = exp(news * max(min(elsewhere, its.tells_at_most), -its.fitting_tells_at_most))
+        self._before = min(self._before * told, _MOST_ODDS)
+        self._since = min(self._since * told, _MOST_ODDS)

@@ -92,7 +92,7 @@ class EnmlParameters:
     news_after_m: float = 0.3
     """Scans that are closer together than this (metres and radians together) count for less, as
     they say much the same (ours)."""
-    scan_tells_at_most: float = 5.0
+    tells_at_most: float = 5.0
     """... and none changes the logarithm of the odds by more than this (ours)."""
     familiar_share: float = 0.2
     """At least this share of what is on no map, less what changed, is recognized from a scan just
@@ -108,8 +108,13 @@ class EnmlParameters:
     familiar_tells_at_most: float = 3.0
     """... and what is familiar speaks against it by no more than this (ours)."""
     map_counts: float = 0.1
-    """How much a scan's likelihood on the map counts (ours, as a logistic regression over simulated
-    and real drives has it: where a map is out of date, it is so for many metres)."""
+    """How much a scan's likelihood on the map counts..."""
+    map_misleads: float = 20.0
+    """... beyond so much that it is likelier anywhere than where the robot is (ours: where a map is
+    out of date, it is so for many metres; less than 30 in all but a hundredth of such drives)."""
+    fitting_tells_at_most: float = 1.0
+    """... and what fits the map speaks for being here by no more than this, as other places of a
+    building look the same (ours)."""
     lost_above: float = 0.5
     """A robot says that it is lost where that is more probable than this."""
     alignment_believed_above: float = 0.55
@@ -121,13 +126,16 @@ class EnmlParameters:
     known_within_m: float = 2.5
     """A robot that is put down with a wider standard deviation may be anywhere (published as the
     reach of its search)."""
-    recovery_every_m: float = 0.7
+    recovery_every_m: float = 0.5
     """A lost robot looks for its place again after driving this far (ours)."""
     recovery_lead: float = 5.0
     """How much likelier the place has to be than all others, at first (ours; logarithm per
     scan)..."""
     recovery_patience_m: float = 8.0
     """... which becomes less until, after half of this way, half of it will do (ours)."""
+    drifted_counts: float = 10.0
+    """How much likelier it is, where nothing strange was seen, that a lost robot has drifted off to
+    near by than that it is somewhere else (ours; logarithm per scan)."""
     found_is_wrong: float = 0.1
     """How probable it is at first that a place which was found is not the right one (ours)..."""
     probation_m: float = 5.0

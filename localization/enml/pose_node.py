@@ -1,6 +1,6 @@
 """A pose of the episode: what was seen from it, how the robot came there, what it was taken for."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from mend.localization.enml.motion_model import Travel
 from mend.localization.enml.problem import Floats, Indices
-from mend.localization.points import ScanPoints
+from mend.localization.points import DEFAULT_MAX_RANGE_M, ScanPoints
 from mend.localization.scan import Scan
 
 
@@ -83,10 +83,9 @@ class PoseNode:
     @property
     def reach_m(self) -> float:
         """How far the map has to be known to say something about what was seen from here."""
-        return float(self.ranges_m.max()) + 1.0 if len(self.ranges_m) else 1.0
+        farthest_m = float(self.ranges_m.max()) if len(self.ranges_m) else 0.0
+        return min(farthest_m + 1.0, DEFAULT_MAX_RANGE_M)
 
-    def take_off_map(self) -> None:
-        """Forget what lay on lines of the map."""
-        self.cast_pose = None
-        self.ltf = LtfMatches.none()
-        self.is_ltf = np.zeros(len(self.scan_points), dtype=np.bool_)
+    def off_map(self) -> "PoseNode":
+        """The same, with nothing of it on a map."""
+        return replace(self, cast_pose=None, expected_m=np.zeros(0), ltf=LtfMatches.none())

@@ -1,31 +1,34 @@
 """Finding a lost robot again: what it saw since, laid over the map."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import product
+from itertools import count, product
+from math import cos
 
 import numpy as np
 
-from mend.localization.beam_model import BeamModelParameters
 from mend.localization.distance_field import DistanceField
 from mend.localization.enml.anywhere import Anywhere
 from mend.localization.enml.episode import Episode
 from mend.localization.enml.global_search import GlobalSearch, Region, distinct, same_place
-from mend.localization.enml.looks import ScanLook, glance, log_likelihood, looks_of
+from mend.localization.enml.looks import Looks, glances, log_likelihoods, looks_of
 from mend.localization.enml.parameters import EnmlParameters
-from mend.localization.enml.polishing import polish
+from mend.localization.enml.polishing import GATES_M, polish
 from mend.localization.enml.problem import Floats
-from mend.localization.enml.visible import Visible
+from mend.localization.enml.work import Work, done, pieces
 from mend.localization.pose import Poses, compose, relative, transform
+from mend.maps.segment_grid import SegmentGrid
 
 _THINNED_M = 0.25
-_CANDIDATES = 4000
+_CANDIDATES = 2000
 """So many places of the lattice are glanced at with a few beams..."""
 _BEAMS_GLANCED = 60
-_CLIMBERS = 300
+_CLIMBERS = 150
 """... the best of them moved to where the points fit, and weighed by two scans..."""
-_FIRST_GATES_M = (0.6, 0.4, 0.25)
-_LAST_GATES_M = (0.25, 0.15, 0.15)
+_NEAR = 40
+"""... and so many near where the robot is followed, too..."""
+_FIRST_GATES_M = np.array([0.6, 0.4, 0.25])
+_LAST_GATES_M = np.array([0.25, 0.15, 0.15])
 _AROUND_M = (-0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6)
 """How far from where points have been moved to they may fit still better."""
 _LEAST_FINALISTS, _MOST_FINALISTS = 40, 240
@@ -35,15 +38,9 @@ _SCANS_POLISHED = 3
 _SCANS_WEIGHED = 6
 _LEAST_DOUBT = 0.5
 """The share of the lead that is always needed, and all that is where the robot is followed."""
-
-_SHARP = BeamModelParameters(
-    hit_share=0.4,
-    short_share=0.59,
-    random_share=0.01,
-    hit_deviation_m=0.1,
-    short_decay_per_m=0.05,
-)
-"""Places are told apart by some centimetres, and by the walls that they would be seen through."""
+_PIECES_PER_UPDATE = 6
+_BEAMS_PER_PIECE = 50_000
+"""So many rays of the map are a piece of work: some milliseconds."""
 
 MayBeAt = Callable[[float, float], bool]
 """Whether the robot may be at a point of the map at all, x and y in metres."""
@@ -68,35 +65,47 @@ class Recovery:
         self,
         everywhere: Region,
         field: DistanceField,
-        visible: Visible,
+        grid: SegmentGrid,
         anywhere: Anywhere,
         parameters: EnmlParameters,
         may_be_at: MayBeAt | None = None,
     ) -> None:
         self._may_be_at = may_be_at
         self._everywhere = everywhere
-        self._search = GlobalSearch(field)
-        self._visible = visible
-        self._anywhere = anywhere.by(_SHARP)
+        self._lattice = GlobalSearch(field)
+        self._grid = grid
+        self._anywhere = anywhere
         self._parameters = parameters
+        self._cos_max_angle = cos(parameters.ltf_max_angle_rad)
         self.forget()
 
     def forget(self) -> None:
         """Begin anew: the robot may be elsewhere than all places so far."""
         self._open: Floats = np.zeros((0, 3))
         self._won: Poses | None = None
+        self.stop()
+
+    def stop(self) -> None:
+        """Give up the search that goes on, but not the places that those before left open."""
+        self._work: Work[Found | None] | None = None
+        self._since = np.zeros(3)
 
     def move(self, motion: Poses) -> None:
         """Let the open places come along with the robot."""
+        self._since = compose(self._since, motion)
         if len(self._open):
             self._open = compose(self._open, motion)
         if self._won is not None:
             self._won = compose(self._won, motion)
 
+    @property
+    def is_searching(self) -> bool:
+        """Whether a search goes on."""
+        return self._work is not None
+
     def open_places(self, episode: Episode) -> list[Found]:
         """The places that explain what is seen and are hardly worse than the best, best first."""
-        looks = looks_of(episode, _SCANS_WEIGHED)
-        ranked = _ranked(self._found(list(self._open), looks)) if len(self._open) else []
+        ranked = _ranked(done(self._weigh(self._open, looks_of(episode, _SCANS_WEIGHED))))
         return [
             each
             for each in ranked
@@ -104,116 +113,194 @@ class Recovery:
             and each.score > ranked[0].score - _IN_THE_RUNNING
         ]
 
-    def search(self, episode: Episode, followed: Episode | None, path_m: float) -> Found | None:
-        """Where on the map the newest pose is; None if unclear.
+    def begin(
+        self, episode: Episode, followed: Episode | None, path_m: float, *, drifted: bool = False
+    ) -> None:
+        """Search from now on for where the newest pose is on the map, by what is seen until now.
 
         Where the robot is still `followed` is believed sooner than other places, which two searches
         in a row have to find then. `path_m` is how far it has driven since it was lost: the
         farther, the more of the surroundings is in the episode, and the smaller a lead has to be to
-        be believed.
+        be believed. One that has `drifted` off (nothing speaks for having been carried) is likely
+        to be near by.
         """
-        if self._visible.is_empty:
+        self.stop()
+        self._work = self._search(_Evidence.of(episode, followed, path_m, drifted))
+
+    def go_on(self, *, to_its_end: bool = False) -> Found | None:
+        """Do what fits into one update; at the search's end where the robot is, if that is clear.
+
+        Nothing where no search goes on.
+        """
+        for _ in count() if to_its_end else range(_PIECES_PER_UPDATE):
+            if self._work is None:
+                break
+            try:
+                next(self._work)
+            except StopIteration as ended:
+                found: Found | None = ended.value
+                since = self._since
+                self.stop()
+                return found and Found(compose(found.pose, since), found.score)
+        return None
+
+    def _search(self, seen: "_Evidence") -> Work[Found | None]:
+        if not len(self._grid.segments):
             return None
-        places = self._climbers(episode, _submap(episode))
-        promising = _in_the_running(self._found(places, looks_of(episode, 2)))
-        found = self._weigh(episode, [each.pose for each in promising])
+        won, self._won = self._won, None
+        places = yield from self._climbers(seen)
+        roughly = yield from self._weigh(places, seen.roughly)
+        found = yield from self._finalists(seen, _poses_of(_in_the_running(roughly)))
+        self._open = compose(_poses_of(_in_the_running(found)), self._since)
         here = None
-        if followed is not None:
-            looks = looks_of(followed, _SCANS_WEIGHED, newest=len(episode))
-            (here,) = self._found([followed.poses[-1]], looks)
-        winner = self._clear_winner(found, here, path_m)
-        won, self._won = self._won, None if winner is None else winner.pose
+        if seen.here is not None and seen.followed is not None:
+            (here,) = yield from self._weigh(seen.here[None], seen.followed)
+        winner = self._clear_winner(found, here, won, seen)
         if winner is None:
             return None
+        self._won = compose(winner.pose, self._since)
         if here is not None:
             if same_place(winner.pose, here.pose):
                 return winner
             if won is None or not same_place(winner.pose, won):
                 return None
-        return self._sharpened(winner, episode)
+        return (yield from self._sharpened(winner, seen))
 
-    def _climbers(self, episode: Episode, points: Floats) -> list[Poses]:
-        """The places of the lattice that look right, each where the points fit best."""
-        (newest,) = looks_of(episode, 1, _BEAMS_GLANCED)
-        candidates = self._search.candidates(points, self._everywhere, _CANDIDATES)
-        merits = np.array([glance(self._visible, newest, each) for each in candidates])
-        best = np.argsort(-merits, kind="stable")[:_CLIMBERS]
-        looks = looks_of(episode, 1)
-        return [
-            polish(
-                self._visible,
-                looks,
-                self._search.climb(points, candidates[index]),
-                self._parameters,
-                _FIRST_GATES_M,
-            )
-            for index in best
-        ]
+    def _climbers(self, seen: "_Evidence") -> Work[Floats]:
+        """The places of the lattice that look right, each where what is seen fits best."""
+        wide = yield from self._lattice.candidates(seen.points, self._everywhere, _CANDIDATES)
+        merits = np.zeros(len(wide))
+        for piece in _portions(wide, seen.glance):
+            glances(self._grid, seen.glance, wide[piece], merits[piece])
+            yield
+        places = wide[np.argsort(-merits, kind="stable")[:_CLIMBERS]]
+        if seen.here is not None:
+            region = Region.around(seen.here, self._parameters.known_within_m)
+            near = yield from self._lattice.candidates(seen.points, region, _NEAR)
+            places = np.concatenate((places, near))
+        yield from self._polish(places, seen.newest, _FIRST_GATES_M)
+        return places
 
-    def _weigh(self, episode: Episode, places: list[Poses]) -> list[Found]:
-        """Places new and still open, with what speaks for each; the best of them stay open."""
-        few, looks = looks_of(episode, _SCANS_POLISHED), looks_of(episode, _SCANS_WEIGHED)
-        polished = [
-            polish(self._visible, few, place, self._parameters) for place in [*self._open, *places]
-        ]
-        found = self._found(self._possible(polished), looks)
-        self._open = np.array([each.pose for each in _in_the_running(found)]).reshape(-1, 3)
-        return found
+    def _finalists(self, seen: "_Evidence", places: Floats) -> Work[list[Found]]:
+        """Places new and still open, with what speaks for each."""
+        # What was left open has come along with the robot since this search began.
+        still_open = compose(self._open, relative(self._since, np.zeros(3)))
+        polished = np.concatenate((still_open, places))
+        yield from self._polish(polished, seen.few, GATES_M)
+        return (yield from self._weigh(self._possible(polished), seen.many))
 
-    def _sharpened(self, found: Found, episode: Episode) -> Found:
+    def _sharpened(self, found: Found, seen: "_Evidence") -> Work[Found]:
         """The best place around one: along a corridor points slide only so far by themselves."""
-        few, looks = looks_of(episode, _SCANS_POLISHED), looks_of(episode, _SCANS_WEIGHED)
-        around = [
-            polish(
-                self._visible,
-                few,
-                compose(found.pose, np.array([ahead_m, left_m, 0.0])),
-                self._parameters,
-                _LAST_GATES_M,
-            )
-            for ahead_m, left_m in product(_AROUND_M, _AROUND_M)
-        ]
-        possible = self._possible(around)
-        return max([found, *self._found(possible, looks)], key=lambda each: each.score)
+        aside = [[ahead_m, left_m, 0.0] for ahead_m, left_m in product(_AROUND_M, _AROUND_M)]
+        around = compose(found.pose, np.array(aside))
+        yield from self._polish(around, seen.few, _LAST_GATES_M)
+        weighed = yield from self._weigh(self._possible(around), seen.many)
+        return max([found, *weighed], key=lambda each: each.score)
 
-    def _possible(self, places: list[Poses]) -> list[Poses]:
+    def _polish(self, places: Floats, looks: Looks, gates_m: Floats) -> Work[None]:
+        for piece in _portions(places, looks, 2 * len(gates_m)):
+            polish(self._grid, looks, gates_m, self._cos_max_angle, places[piece])
+            yield
+
+    def _possible(self, places: Floats) -> Floats:
         may_be_at = self._may_be_at
         if may_be_at is None:
             return places
-        return [each for each in places if may_be_at(float(each[0]), float(each[1]))]
+        return places[[may_be_at(float(each[0]), float(each[1])) for each in places]]
 
-    def _found(self, places: list[Poses], looks: list[ScanLook]) -> list[Found]:
-        anywhere = float(
-            np.mean([self._anywhere.log_likelihood(each.ranges_m, each.bearings) for each in looks])
-        )
-        return [
-            Found(
-                place, log_likelihood(self._visible, looks, place, self._anywhere.model) - anywhere
-            )
-            for place in places
-        ]
+    def _weigh(self, places: Floats, looks: Looks) -> Work[list[Found]]:
+        """Places with what speaks for each."""
+        scores = np.zeros(len(places))
+        for piece in _portions(places, looks):
+            log_likelihoods(self._grid, looks, places[piece], self._anywhere.model, scores[piece])
+            yield
+        scores -= self._anywhere.mean_log_likelihood(looks)
+        return [Found(*each) for each in zip(places, scores.tolist(), strict=True)]
 
     def _clear_winner(
-        self, found: list[Found], followed: Found | None, path_m: float
+        self, found: list[Found], here: Found | None, won: Poses | None, seen: "_Evidence"
     ) -> Found | None:
-        if followed is not None:
-            found = [followed, *found]
-        if not found:
+        """The place that is clearly the likeliest, or is it again."""
+        its = self._parameters
+        if here is not None:
+            found = [here, *found]
+        merits = [each.score + self._prior(each, seen) for each in found]
+        best = int(np.argmax(merits)) if merits else None
+        if best is None or merits[best] <= its.found_above:
             return None
-        best = max(found, key=lambda each: each.score)
-        rivals = [each.score for each in found if not same_place(each.pose, best.pose)]
-        lead = best.score - max(rivals, default=0.0)
-        doubt = max(_LEAST_DOUBT, 1.0 - path_m / self._parameters.recovery_patience_m)
-        if followed is not None and same_place(best.pose, followed.pose):
+        place = found[best].pose
+        rivals = [
+            merit
+            for each, merit in zip(found, merits, strict=True)
+            if not same_place(each.pose, place)
+        ]
+        doubt = max(_LEAST_DOUBT, 1.0 - seen.path_m / its.recovery_patience_m)
+        if here is not None and same_place(place, here.pose):
             doubt = _LEAST_DOUBT
-        clear = lead >= doubt * self._parameters.recovery_lead
-        return best if clear and best.score > self._parameters.found_above else None
+        lead = merits[best] - max(rivals, default=0.0)
+        again = won is not None and same_place(place, won)
+        return found[best] if again or lead >= doubt * its.recovery_lead else None
+
+    def _prior(self, found: Found, seen: "_Evidence") -> float:
+        """Log odds of a place: who has drifted off is near by."""
+        its, here = self._parameters, seen.here
+        if here is None or not seen.drifted:
+            return 0.0
+        near = np.hypot(*(found.pose - here)[:2]) < its.known_within_m
+        return its.drifted_counts if near else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class _Evidence:
+    """What one search goes by: looks at what was seen since, and at the way that is followed."""
+
+    points: Floats
+    glance: Looks
+    newest: Looks
+    roughly: Looks
+    few: Looks
+    many: Looks
+    here: Poses | None
+    followed: Looks | None
+    path_m: float
+    drifted: bool
+
+    @classmethod
+    def of(
+        cls, episode: Episode, followed: Episode | None, path_m: float, drifted: bool
+    ) -> "_Evidence":
+        """`followed` where the robot is, by what was seen since the episode began."""
+        return cls(
+            points=_submap(episode),
+            glance=looks_of(episode, 1, _BEAMS_GLANCED),
+            newest=looks_of(episode, 1),
+            roughly=looks_of(episode, 2),
+            few=looks_of(episode, _SCANS_POLISHED),
+            many=looks_of(episode, _SCANS_WEIGHED),
+            here=None if followed is None else followed.poses[-1].copy(),
+            followed=(
+                None
+                if followed is None
+                else looks_of(followed, _SCANS_WEIGHED, newest=len(episode))
+            ),
+            path_m=path_m,
+            drifted=drifted,
+        )
+
+
+def _portions(places: Floats, looks: Looks, times: int = 1) -> Iterator[slice]:
+    """Pieces of work: for each place all beams of some looks are cast, so many times."""
+    return pieces(len(places), _BEAMS_PER_PIECE // (times * max(len(looks.bearings), 1)))
+
+
+def _poses_of(found: list[Found]) -> Floats:
+    return np.array([each.pose for each in found]).reshape(-1, 3)
 
 
 def _ranked(found: list[Found]) -> list[Found]:
     """The best first, and of those at the same place only the best."""
     ranked = sorted(found, key=lambda each: -each.score)
-    return [ranked[index] for index in distinct(np.array([each.pose for each in ranked]))]
+    return [ranked[index] for index in distinct(_poses_of(ranked))]
 
 
 def _in_the_running(found: list[Found]) -> list[Found]:

@@ -61,6 +61,12 @@ class Track:
         self._set_first_gate()
         return self._settle()
 
+    def go_by_itself(self, episode: Episode, covariance: Floats) -> None:
+        """Take over what was seen on another track, but not where."""
+        self.by = By.ITSELF
+        self.episode = episode.off_map(whitening_of(covariance))
+        self._settle()
+
     def lay_over_map(self, newest: Poses, deviations: Floats) -> Floats:
         """Take the episode to where its newest pose was found, so uncertain (x, y, heading)."""
         self.by = By.MAP

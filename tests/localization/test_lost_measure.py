@@ -10,9 +10,9 @@ from mend.localization.enml.anywhere import Anywhere
 from mend.localization.enml.global_search import Region
 from mend.localization.enml.lost_measure import LostMeasure
 from mend.localization.enml.parameters import EnmlParameters
-from mend.localization.enml.visible import Visible
 from mend.localization.scan import Scan
 from mend.maps.ray_cast import cast
+from mend.maps.segment_grid import segment_grid
 from mend.maps.vector_map import VectorMap
 
 ITS = EnmlParameters()
@@ -23,16 +23,17 @@ MODEL = BeamModelParameters()
 def test_with_nothing_to_tell_the_prior_adds_up_over_the_way() -> None:
     measure = LostMeasure(ITS)
     for _ in range(100):
-        measure.weigh(1.0, 0.0)
+        measure.weigh(1.0, 0.0, 0.0)
     odds = 100.0 * ITS.carried_per_m
     assert measure.probability == pytest.approx(odds / (1.0 + odds))
 
 
-def test_no_scan_decides_alone_and_some_in_a_row_do() -> None:
+@pytest.mark.parametrize("against", [(1e9, 0.0), (0.0, 1e9)], ids=["strange", "elsewhere"])
+def test_no_scan_decides_alone_and_some_in_a_row_do(against: tuple[float, float]) -> None:
     measure = LostMeasure(ITS)
-    measure.weigh(1.0, 1e9)
+    measure.weigh(1.0, *against)
     assert measure.probability < ITS.lost_above
-    measure.weigh(1.0, 1e9)
+    measure.weigh(1.0, *against)
     assert measure.probability > ITS.lost_above
 
 
@@ -40,21 +41,45 @@ def test_scans_from_hardly_different_places_count_for_little() -> None:
     near, far = LostMeasure(ITS), LostMeasure(ITS)
     for measure, apart_m in ((near, 0.01), (far, ITS.news_after_m)):
         measure.begin(0.5)
-        measure.weigh(apart_m, 3.0)
+        measure.weigh(apart_m, 0.0, 3.0)
     assert near.probability < 0.53
     assert far.probability > 0.9
-    near.weigh(0.0, 1e9)
+    near.weigh(0.0, 1e9, 1e9)
     assert near.probability < 0.53
 
 
-@given(st.lists(st.tuples(st.floats(0.0, 2.0), st.floats(-1e3, 1e3)), max_size=200))
-def test_it_stays_a_probability_and_comes_back(scans: list[tuple[float, float]]) -> None:
+def test_what_looks_familiar_says_nothing_of_having_been_carried_before() -> None:
     measure = LostMeasure(ITS)
-    for driven_m, against in scans:
-        measure.weigh(driven_m, against)
+    measure.begin(0.4)
+    for _ in range(20):
+        measure.weigh(ITS.news_after_m, -10.0, 0.0)
+    assert measure.probability >= 0.4
+    strange = LostMeasure(ITS)
+    strange.weigh(ITS.news_after_m, 10.0, 0.0)
+    before = strange.probability
+    strange.weigh(ITS.news_after_m, -10.0, 0.0)
+    assert strange.probability < before / 5.0
+
+
+def test_what_is_strange_is_so_however_well_it_fits_the_map() -> None:
+    measure = LostMeasure(ITS)
+    for _ in range(3):
+        measure.weigh(ITS.news_after_m, 10.0, -1e9)
+    assert measure.probability > ITS.lost_above
+
+
+@given(
+    st.lists(
+        st.tuples(st.floats(0.0, 2.0), st.floats(-1e3, 1e3), st.floats(-1e3, 1e3)), max_size=200
+    )
+)
+def test_it_stays_a_probability_and_comes_back(scans: list[tuple[float, float, float]]) -> None:
+    measure = LostMeasure(ITS)
+    for scan in scans:
+        measure.weigh(*scan)
         assert 0.0 <= measure.probability <= 1.0
-    for _ in range(10):
-        measure.weigh(1.0, -1e9)
+    for _ in range(20):
+        measure.weigh(1.0, -1e9, -1e9)
     assert measure.probability < 0.01
 
 
@@ -67,7 +92,7 @@ def test_it_begins_with_what_it_is_told() -> None:
 
 
 def anywhere_in(room: VectorMap) -> Anywhere:
-    return Anywhere(Visible(room.segments, 30.0), Region(*room.bounds), MODEL)
+    return Anywhere(segment_grid(room.segments), Region(*room.bounds), MODEL)
 
 
 @given(x=st.floats(0.5, 5.5), y=st.floats(2.0, 3.5), heading=st.floats(-3.0, 3.0))
