@@ -14,7 +14,7 @@ from mend.fleet.scheduling.infeasibility import infeasibilities
 from mend.fleet.scheduling.no_place import conflict_words, nearest_conflicts, no_place_words
 from mend.fleet.scheduling.objective import cost
 from mend.fleet.scheduling.partial_routes import items_in, part_schedule, without_items
-from mend.fleet.scheduling.problem import Problem, Window
+from mend.fleet.scheduling.problem import Item, Problem, Window
 from mend.fleet.scheduling.replanning.item_state import without_deadline
 from mend.fleet.scheduling.schedule import Action, Route
 from mend.fleet.scheduling.temporal_network import Conflict
@@ -48,6 +48,7 @@ class PlanRepair:
         self.put_off: dict[int, str] = {}
         self.overtime: dict[int, str] = {}
         self._under_way = under_way
+        self._asked = problem.items
         self._selling: dict[int, None] = {}
         self._begun: dict[int, int] = {}
         self._shift_ends_s: dict[int, float] = {}
@@ -109,7 +110,9 @@ class PlanRepair:
         left = self._sell_beyond_shifts(left)
         self.put_off.update(self._reasons(left))
         for item in left:
-            self.late.pop(item, None)
+            # Its time counts again: there may be room for it after all, and then it is in time.
+            if self.late.pop(item, None) is not None:
+                self._describe(item, self._asked[item])
             self._drop_begun(item)
 
     def _overload(self) -> list[int]:
@@ -188,8 +191,11 @@ class PlanRepair:
 
     def _go_late(self, item: int, why: str) -> None:
         self.late[item] = why
+        self._describe(item, without_deadline(self.problem.items[item]))
+
+    def _describe(self, item: int, described: Item) -> None:
         items = list(self.problem.items)
-        items[item] = without_deadline(items[item])
+        items[item] = described
         self.problem = replace(self.problem, items=tuple(items))
 
     def _sell_beyond_shifts(self, left: Sequence[int]) -> Sequence[int]:

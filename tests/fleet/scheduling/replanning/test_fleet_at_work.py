@@ -154,3 +154,29 @@ FleetAtWork.TestCase.settings = settings(
     suppress_health_check=[HealthCheck.too_slow],
 )
 TestFleetAtWork = FleetAtWork.TestCase
+
+
+def test_what_had_no_place_in_time_and_then_has_one_is_told_to_be_late() -> None:
+    """Found by drawing: two long delays at once, and an item that is put off in between."""
+    drawn = FleetAtWork()
+    drawn.delay(gap_s=0.0, which=0, by_s=0.5)
+    drawn.delay(gap_s=0.0, which=3, by_s=0.5)
+    drawn.new_item(gap_s=20.0, origin=709, step=5, patience=900)
+    drawn.new_item(gap_s=7.5, origin=1607, step=6, patience=900)
+    drawn.delay(gap_s=60.0, which=1694, by_s=0.5)
+    drawn.new_item(gap_s=60.0, origin=346, step=1, patience=90)
+    drawn.delay(gap_s=0.0, which=0, by_s=0.5)
+    drawn.new_item(gap_s=60.0, origin=861, step=7, patience=inf)
+    drawn.new_item(gap_s=7.5, origin=856, step=6, patience=900)
+    drawn.new_item(gap_s=0.0, origin=0, step=1, patience=90)
+    drawn.new_item(gap_s=60.0, origin=0, step=1, patience=90)
+    drawn.delay(gap_s=20.0, which=0, by_s=0.5)
+    drawn.delay(gap_s=0.0, which=0, by_s=0.5)
+    drawn.new_item(gap_s=7.5, origin=0, step=1, patience=90)
+    drawn.delay(gap_s=0.0, which=0, by_s=400.0)
+    robot = drawn.robots(work=True)[0]
+    outcome = drawn.fleet.apply(RobotDelayed(robot, 400.0), drawn.fleet.now_s)
+    assert "new5" in outcome.late
+    drawn.plan_passes_the_checker()
+    drawn.nothing_is_lost()
+    drawn.teardown()
