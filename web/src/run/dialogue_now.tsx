@@ -3,9 +3,9 @@ import { plain } from "../tree/words";
 import { picturePath } from "../wire/rest";
 import { awaiting, type OpenDialogue } from "./fold";
 import { t } from "../words/words";
-import { quoted } from "../question/answering";
 import "./dialogue_now.css";
 import { learn } from "../words/said";
+import { Quoted } from "../words/told";
 
 export function DialogueNow({ dialogue }: { dialogue: OpenDialogue }) {
   const { opened, raised, prompt, answered, claimedBy } = dialogue;
@@ -20,7 +20,7 @@ export function DialogueNow({ dialogue }: { dialogue: OpenDialogue }) {
         <p class="small quiet">
           {opened.robot} · {plain(opened.issue)} · {plain(opened.object ?? opened.name)}
         </p>
-        {prompt !== null && <p class="dialogue-text">{quoted(prompt.text)}</p>}
+        {prompt !== null && <p class="dialogue-text"><Quoted text={prompt.text} /></p>}
         <p class="small">
           {STATE[awaiting(dialogue) ?? "none"]}
           {answered !== null &&

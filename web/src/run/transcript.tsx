@@ -5,7 +5,7 @@ import type { Tone } from "../wire/types";
 import { clock } from "./run_words";
 import { joined, type Line, linesOf } from "./transcript_lines";
 import { t } from "../words/words";
-import { Told as ToldText } from "../words/told";
+import { Quoted, Told as ToldText } from "../words/told";
 import "./transcript.css";
 
 /** So many lines are drawn together, and skipped together while nothing of them is in sight. */
@@ -106,15 +106,7 @@ function Portion({ lines, until, marked, onChoose }: PortionProps) {
 
 /** A line may be joined of several texts. */
 function Text({ of: { text, tone } }: { of: Line }) {
-  if (!QUOTED.includes(tone)) return <ToldText text={text} />;
-  const [before, after] = t("“{text}”", { text: "\n" }).split("\n");
-  return (
-    <>
-      {before}
-      <ToldText text={text} />
-      {after}
-    </>
-  );
+  return QUOTED.includes(tone) ? <Quoted text={text} /> : <ToldText text={text} />;
 }
 
 const NEAR_THE_END_PX = 80;
