@@ -260,6 +260,8 @@ class EnmlLocalizer:
 
     def _believe(self, place: Poses) -> Floats | None:
         """The robot is at a place; the covariance, if it was followed elsewhere."""
+        # What a search still looked through was seen before this was known.
+        self._recovery.stop()
         self._measure.begin(self._parameters.found_is_wrong)
         self._strangeness = Strangeness(self._parameters)
         if self._track.by is By.MAP and same_place(place, self._track.pose):
