@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from writing_transcriber import Writing
 
 from mend.server.speech.agreeing_decoder import ALONE_MARGIN, AgreeingDecoder
 from mend.server.speech.commands import Command
@@ -24,18 +25,6 @@ class Listening:
 
     def end(self) -> Hypothesis:
         return self._hypothesis
-
-
-class Writing:
-    """Implements `Transcriber`: writes what it is told."""
-
-    def __init__(self, text: str) -> None:
-        self._text = text
-        self.sound = b""
-
-    def text_of(self, sound: bytes) -> str:
-        self.sound = sound
-        return self._text
 
 
 YES = Hypothesis("c_yes", Command.YES, "yes", 0.025)

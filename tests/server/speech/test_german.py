@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from writing_transcriber import Writing
 
 from mend.server.speech.commands import Command
 from mend.server.speech.ear import NoEars, choose_ears
@@ -10,18 +11,6 @@ from mend.server.speech.german import PHRASES_IN_GERMAN, meaning_in_german
 from mend.server.speech.phrases import FIXED, sorry_name
 from mend.server.speech.vocabulary import PHRASES_OF, SpokenLanguage, Vocabulary
 from mend.server.speech.written_decoder import WrittenDecoder
-
-
-class Writing:
-    """Implements `Transcriber`: writes what it is told, of all that it was given."""
-
-    def __init__(self, text: str) -> None:
-        self._text = text
-        self.sound = b""
-
-    def text_of(self, sound: bytes) -> str:
-        self.sound = sound
-        return self._text
 
 
 @pytest.mark.parametrize("vocabulary", Vocabulary)
