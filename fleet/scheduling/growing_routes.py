@@ -77,9 +77,10 @@ class GrowingRoutes:
         return min(found, key=lambda bid: bid.cost, default=None)
 
     def award(self, item: int, bid: Bid) -> set[int]:
-        """Put the item in for good; the robots whose routes or times are others now.
+        """Put the item in for good; the robots for whom something else may fit now.
 
-        Raises `ValueError` where its itinerary does not fit.
+        They are those whose routes or times are others, and who waits for one of these at a
+        transfer. Raises `ValueError` where its itinerary does not fit.
         """
         arrays, state = self._arrays, self._state
         state.found.leg[:], state.found.ends[:] = bid.legs, bid.ends
@@ -90,11 +91,30 @@ class GrowingRoutes:
         changed = np.flatnonzero(state.trial.rows.version != state.current.rows.version)
         copy_plan(state.trial, state.current)
         self.begun.pop(item, None)
-        return set(changed.tolist())
+        return self._with_coupled(set(changed.tolist()))
+
+    def _with_coupled(self, robots: set[int]) -> set[int]:
+        """And who hands over to or takes over from one of the robots, and whoever does from those.
+
+        Who is delayed at a transfer delays all that the other one does after it.
+        """
+        if not self._state.current.transfers.any():
+            return robots
+        carriers: dict[int, set[int]] = {}
+        for robot, route in enumerate(self.routes):
+            for task in route:
+                carriers.setdefault(task.item, set()).add(robot)
+        coupled, known = set(robots), 0
+        while len(coupled) > known:
+            known = len(coupled)
+            for each in carriers.values():
+                if each & coupled:
+                    coupled |= each
+        return coupled
 
     def still_lowest(self, item: int, bid: Bid, changed: set[int]) -> bool:
-        """Whether a bid from before an award still holds: none of its robots has changed, and none
-        of those that have would do it cheaper alone."""
+        """Whether a bid from before an award still holds: nothing else may fit for its robots, and
+        none of those for whom it may would do it cheaper alone."""
         if bid.robots & changed:
             return False
         found = self._state.found

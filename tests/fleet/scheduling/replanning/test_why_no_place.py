@@ -82,6 +82,18 @@ def test_item_has_a_conflict_where_it_breaks_some_robots_longer_route(
         assert conflict is None or {each.task for each in conflict.reasons} <= {None, *tasks}
 
 
+@pytest.mark.parametrize(
+    ("seed", "doors"), [(493, True), (3606, False), (6215, False), (7585, True), (9694, False)]
+)
+def test_bid_is_made_again_once_who_shares_a_transfer_has_more_to_do(
+    seed: int, doors: bool
+) -> None:
+    problem = crowded(seed, doors=doors)
+    sale = sell(problem, ((), ()), range(len(problem.items)))
+    assert {*items_in(sale.routes)} | {*sale.unsold} == {*range(len(problem.items))}
+    assert TimedRoutes(problem, sale.routes, items_in(sale.routes)).conflict is None
+
+
 @pytest.mark.slow(seconds=3)
 @given(st.integers(0, 10_000), st.booleans())
 @settings(deadline=None, max_examples=40)
