@@ -1,13 +1,14 @@
 """Every view at every width, light and dark: what axe finds, what overlaps, what sticks out.
 
-Each is played once, and all is looked at in it.
+Each is played once, and all is looked at in it, in English and then in German.
 """
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TypeAlias
 
 import pytest
-from console_in_browser import OpenPage, settle
+from console_in_browser import NO_WEBGL, OpenPage, settle
 from console_situations import (
     SITUATIONS,
     Situation,
@@ -16,14 +17,16 @@ from console_situations import (
     live_run,
     no_question,
     no_runs,
+    read_in_german,
     scene_out_of_reach,
     scenes,
     settings,
+    sign_in,
     trees,
     unknown,
     wrong_tree,
 )
-from playwright.async_api import Page, ViewportSize
+from playwright.async_api import Page, ViewportSize, expect
 from sampled import sample
 from test_accessibility import PHONE, RULES, Theme, load_axe, violations
 from test_layout import TALL, WIDTHS, overlaps
@@ -78,6 +81,22 @@ QUIET = (
 # Where the scene in 3-D is looked at among all else.
 DRAWN = (live_run, finished_run)
 EVENTFUL = [each for each in SITUATIONS.values() if each not in QUIET]
+# What only a press opens is gone with the page that it was opened on.
+PRESSED = (delete_tree, sign_in)
+
+ENGLISH_LEFT = (Path(__file__).parent / "english_left.js").read_text().strip()
+# Names, what people have written, and what is understood in English alone.
+OWN_WORDS = (
+    "pick and place",
+    "the blue parcel",
+    "its wheel squeaks",
+    "the glue is still wet",
+    "Builds the base of an EKET cabinet",
+    "I do the",
+    "bring the mail",
+    "bring this to",
+    "„yes“",
+)
 
 
 @pytest.mark.parametrize("situation", QUIET, ids=lambda each: each.__name__)
@@ -86,7 +105,7 @@ async def test_nothing_is_wrong_where_nothing_goes_on(
 ) -> None:
     await lasting_page.emulate_media(color_scheme="light", forced_colors="none")
     await lasting_page.set_viewport_size(PHONE)
-    await expect_nothing_wrong(await situation(lasting_service, reopen))
+    await expect_nothing_wrong(await situation(lasting_service, reopen), situation)
 
 
 @pytest.mark.parametrize("situation", EVENTFUL, ids=lambda each: each.__name__)
@@ -98,11 +117,24 @@ async def test_nothing_is_wrong_with_it(
     async def opened(path: str) -> Page:
         return await open_page(path, drawn=drawn, viewport=PHONE, color_scheme="light")
 
-    await expect_nothing_wrong(await situation(service, opened))
+    await expect_nothing_wrong(await situation(service, opened), situation)
 
 
-async def expect_nothing_wrong(page: Page) -> None:
-    """At every size; a page of the phone's size is open in the light theme."""
+async def expect_nothing_wrong(page: Page, situation: Situation) -> None:
+    """In both languages; a page of the phone's size is open in the light theme, in English."""
+    await expect_room_and_contrast(page)
+    await page.emulate_media(forced_colors="active")
+    assert await page.evaluate(UNMARKED) == []
+    await page.emulate_media(forced_colors="none", color_scheme="light")
+    if situation not in PRESSED:
+        if situation in DRAWN:
+            # A language changes nothing of that.
+            await page.add_init_script(NO_WEBGL)
+        await expect_room_for_german(page)
+
+
+async def expect_room_and_contrast(page: Page) -> None:
+    """At every size."""
     await load_axe(page)
     for size, themes in LOOKED_AT:
         await page.set_viewport_size(size)
@@ -116,5 +148,22 @@ async def expect_nothing_wrong(page: Page) -> None:
             assert await violations(page, RULES[theme]) == [], f"{size}, {theme}"
         beyond = await page.evaluate("document.documentElement.scrollWidth - innerWidth")
         assert beyond <= 0, f"{beyond} px too wide at {size}"
-    await page.emulate_media(forced_colors="active")
-    assert await page.evaluate(UNMARKED) == []
+
+
+async def expect_room_for_german(page: Page) -> None:
+    """As narrow and as wide as can be, and nothing is left in English."""
+    await page.set_viewport_size({"width": WIDTHS[0], "height": TALL})
+    await read_in_german(page)
+    await expect(page.locator("main")).to_be_visible()
+    await expect(page.get_by_text("Wird geladen …")).to_have_count(0)
+    await load_axe(page)
+    for width in (WIDTHS[0], WIDTHS[-1]):
+        await page.set_viewport_size({"width": width, "height": TALL})
+        await settle(page)
+        assert await overlaps(page) == [], f"in German, {width}"
+        beyond = await page.evaluate("document.documentElement.scrollWidth - innerWidth")
+        assert beyond <= 0, f"{beyond} px too wide in German at {width}"
+        if width == WIDTHS[0] or sample(False, True):
+            assert await violations(page, RULES["light"]) == [], f"in German, {width}"
+    left = await page.evaluate(ENGLISH_LEFT)
+    assert [each for each in left if not any(own in each for own in OWN_WORDS)] == []
