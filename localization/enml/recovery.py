@@ -237,7 +237,8 @@ class Recovery:
         doubt = max(_LEAST_DOUBT, 1.0 - seen.path_m / its.recovery_patience_m)
         if here is not None and same_place(place, here.pose):
             doubt = _LEAST_DOUBT
-        lead = merits[best] - max(rivals, default=0.0)
+        # The right place may be among those that were not found.
+        lead = merits[best] - max([its.found_above, *rivals])
         again = won is not None and same_place(place, won)
         return found[best] if again or lead >= doubt * its.recovery_lead else None
 
