@@ -36,7 +36,8 @@ _STEPS = np.array([0.7548776662466927, 0.5698402909980532])
 class Anywhere:
     """The mean likelihood of a scan over places and headings that are spread over a map.
 
-    What the map shows from each place is cast once; a scan is then looked up.
+    What the map shows from each place is cast once; a scan is then looked up. `mean_range_m` is how
+    far away it is.
     """
 
     def __init__(
@@ -50,6 +51,7 @@ class Anywhere:
             _bins(look_at(grid, np.append(each, 0.0), bearings, model.max_range_m)[0], model)
             for each in places
         ]
+        self.mean_range_m = _CELL_M * (float(np.mean(seen)) + 0.5)
         # The headings of one beam stand side by side.
         twice_around = np.tile(seen, 2).reshape(_PLACES, 2 * _HEADINGS, _BEARINGS // _HEADINGS)
         self._expected = np.ascontiguousarray(twice_around.transpose(0, 2, 1))
