@@ -13,7 +13,7 @@ from mend.localization.enml.problem import Floats, Indices
 from mend.maps.compiled import compiled
 from mend.maps.segment_grid import SegmentGrid
 
-Bins = NDArray[np.int16]
+Bins = NDArray[np.uint16]
 Logs = NDArray[np.float32]
 
 MODEL = BeamModelParameters(
@@ -36,7 +36,8 @@ _STEPS = np.array([0.7548776662466927, 0.5698402909980532])
 class Anywhere:
     """The mean likelihood of a scan over places and headings that are spread over a map.
 
-    What the map shows from each place is cast once; a scan is then looked up.
+    What the map shows from each place is cast once; a scan is then looked up. `mean_range_m` is how
+    far away it is.
     """
 
     def __init__(
@@ -50,7 +51,10 @@ class Anywhere:
             _bins(look_at(grid, np.append(each, 0.0), bearings, model.max_range_m)[0], model)
             for each in places
         ]
-        self._expected = np.tile(seen, 2)
+        self.mean_range_m = _CELL_M * (float(np.mean(seen)) + 0.5)
+        # The headings of one beam stand side by side.
+        twice_around = np.tile(seen, 2).reshape(_PLACES, 2 * _HEADINGS, _BEARINGS // _HEADINGS)
+        self._expected = np.ascontiguousarray(twice_around.transpose(0, 2, 1))
         self.model = model
         middles = _CELL_M * (np.arange(round(model.max_range_m / _CELL_M), dtype=np.float64) + 0.5)
         self._logs: Logs = log_densities(middles[:, None], middles[None, :], model).astype(
@@ -78,7 +82,7 @@ class Anywhere:
 
 def _bins(ranges: Floats, model: BeamModelParameters) -> Bins:
     last = round(model.max_range_m / _CELL_M) - 1
-    return np.minimum(ranges / _CELL_M, last).astype(np.int16)
+    return np.minimum(ranges / _CELL_M, last).astype(np.uint16)
 
 
 @compiled
@@ -87,15 +91,17 @@ def score_anywhere(
 ) -> Logs:
     """The sum of log densities at each place and heading, places by headings.
 
-    `expected` is once around, and as much again; of `logs` a row is for one measured range.
+    `expected` is by place, by bearing within a heading's turn, and by heading, once around and as
+    much again; of `logs` a row is for one measured range.
     """
-    places, bearings = expected.shape[0], expected.shape[1] // 2
-    turn = bearings // headings
+    places, turn = expected.shape[:2]
     scores = np.zeros((places, headings), dtype=np.float32)
     for place in range(places):
-        here, sums = expected[place], scores[place]
+        sums = scores[place]
         for beam in range(columns.shape[0]):
             of_range = logs[ranges[beam]]
+            first, within = divmod(columns[beam], turn)
+            here = expected[place, within, first : first + headings]
             for heading in range(headings):
-                sums[heading] += of_range[here[columns[beam] + heading * turn]]
+                sums[heading] += of_range[here[heading]]
     return scores

@@ -12,7 +12,7 @@ from mend.localization.enml.episode import Episode
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import PoseNode
 from mend.localization.enml.problem import Floats
-from mend.localization.pose import Poses, compose, relative, transform, turn, wrap
+from mend.localization.pose import Poses, compose, relative, transform, wrap
 
 _THROUGH_M = 0.3
 _BEAMS_ASIDE = 2
@@ -68,10 +68,9 @@ class Strangeness:
         enough = [
             index for index, node in enumerate(nodes) if len(node.scan_points) >= LEAST_RETURNS
         ]
-        for index in enough:
-            near = _apart(episode, index) < _COMPARED_WITHIN_M
-            if nodes[index].identity == self._familiar and near:
-                return index
+        familiar = next((i for i in enough if nodes[i].identity == self._familiar), None)
+        if familiar is not None and _apart(episode, familiar) < _COMPARED_WITHIN_M:
+            return familiar
         return enough[-1] if enough else None
 
 
@@ -122,13 +121,12 @@ def recognized_points(
 ) -> NDArray[np.bool_]:
     """Which points of a scan lie where an earlier one saw some, on a surface that faces alike.
 
-    `motion` leads from the earlier pose to the later. The earlier scan must not be empty.
+    `motion` leads from the earlier pose to the later.
     """
-    points = transform(motion, later.scan_points.points)
-    normals = turn(float(motion[2]), later.scan_points.normals)
-    away_m, nearest = earlier.tree.query(points)
-    alike = np.sum(normals * earlier.scan_points.normals[nearest], axis=1)
-    seen: NDArray[np.bool_] = (away_m < parameters.stf_gate_m) & (
-        alike > cos(parameters.stf_max_angle_rad)
+    every = np.arange(len(later.scan_points))
+    _, again = earlier.buckets.same_surface(
+        later.scan_points, every, motion, cos(parameters.stf_max_angle_rad)
     )
+    seen = np.zeros(len(later.scan_points), dtype=np.bool_)
+    seen[again] = True
     return seen

@@ -12,8 +12,7 @@ from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import PoseNode
 from mend.localization.enml.problem import Floats, Indices, StfConstraints
 from mend.localization.points import ScanPoints
-from mend.localization.pose import Poses, relative, transform, wrap
-from mend.maps.compiled import compiled
+from mend.localization.pose import Poses, relative, wrap
 
 _MOST_PER_PAIR = 50
 """More points on the same things say little more about how two poses stand to each other."""
@@ -104,57 +103,10 @@ class ShortTermFeatures:
 
     def _nearest(self, earlier: PoseNode, later: PoseNode, motion: Poses) -> StfMatches:
         a, b = earlier.scan_points, later.scan_points
-        rows = np.flatnonzero(~later.is_ltf & later.has_normal)
-        if earlier.tree is None or not len(rows):
-            return StfMatches.of(motion, a, rows[:0], b, rows[:0])
-        points = transform(motion, b.points[rows])
-        gaps, nearest = earlier.tree.query(points, distance_upper_bound=self._parameters.stf_gate_m)
-        seen_a, seen_b = np.empty_like(rows), np.empty_like(rows)
-        count = agreeing(
-            rows,
-            b.normals,
-            gaps,
-            nearest,
-            a.normals,
-            earlier.is_ltf,
-            float(motion[2]),
-            self._cos_max_angle,
-            seen_a,
-            seen_b,
-        )
-        return StfMatches.of(motion, a, seen_a[:count], b, seen_b[:count])
-
-
-@compiled
-def agreeing(
-    rows: Indices,
-    normals_b: Floats,
-    gaps: Floats,
-    nearest: Indices,
-    normals_a: Floats,
-    is_ltf_a: NDArray[np.bool_],
-    turn_rad: float,
-    cos_max_angle: float,
-    seen_a: Indices,
-    seen_b: Indices,
-) -> int:
-    """How many of the later pose's rows face as their nearest earlier ones do; both written down.
-
-    A gap that is infinite means that nothing was near.
-    """
-    c, s = np.cos(turn_rad), np.sin(turn_rad)
-    count = 0
-    for index in range(rows.shape[0]):
-        if not np.isfinite(gaps[index]):
-            continue
-        row, other = rows[index], nearest[index]
-        nx = c * normals_b[row, 0] - s * normals_b[row, 1]
-        ny = s * normals_b[row, 0] + c * normals_b[row, 1]
-        if is_ltf_a[other] or nx * normals_a[other, 0] + ny * normals_a[other, 1] <= cos_max_angle:
-            continue
-        seen_a[count], seen_b[count] = other, row
-        count += 1
-    return count
+        off_map = np.flatnonzero(~later.is_ltf)
+        seen_a, seen_b = earlier.buckets.same_surface(b, off_map, motion, self._cos_max_angle)
+        both = ~earlier.is_ltf[seen_a]
+        return StfMatches.of(motion, a, seen_a[both], b, seen_b[both])
 
 
 @lru_cache(maxsize=64)

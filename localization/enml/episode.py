@@ -55,8 +55,9 @@ class Episode:
             travel, predicted = self.nodes.pop().travel, compose(self.poses[-1], step)
             travel.add(step)
             self.poses = self.poses[:-1]
+        its = self._parameters
         node = PoseNode.of(
-            next(self._identities), scan, scan_points, travel, self._parameters.ltf_gate_m
+            next(self._identities), scan, scan_points, travel, its.ltf_gate_m, its.stf_gate_m
         )
         self.nodes.append(node)
         self.poses = np.vstack([self.poses, predicted])

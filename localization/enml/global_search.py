@@ -21,8 +21,10 @@ _HEADINGS = 72
 _SQUARE = 3
 """Places of the lattice along the side of a square, of which only the best counts."""
 _COARSE_POINTS = 100
-_SUMS_PER_PIECE = 80_000_000
-"""Some milliseconds."""
+_SUMS_PER_PIECE = 50_000_000
+"""Two or three milliseconds..."""
+_SUMS_PER_PLACE = 50
+"""... of which finding the best of a square takes as long as so many at each of its places."""
 _FULL_FIT = 255.0
 """Coarse fits are bytes, and all points of a place fit into two: the search is then fastest."""
 _APART_M = 0.7
@@ -70,7 +72,8 @@ class GlobalSearch:
         some = points[_spread(len(points), _COARSE_POINTS)]
         squares = np.zeros((len(headings), -(-rows // _SQUARE), -(-columns // _SQUARE)), np.uint16)
         best = np.zeros(squares.shape, dtype=np.uint8)
-        for piece in pieces(len(headings), _SUMS_PER_PIECE // (rows * columns * len(some))):
+        sums = rows * columns * (len(some) + _SUMS_PER_PLACE)
+        for piece in pieces(len(headings), _SUMS_PER_PIECE // sums):
             for number in range(piece.start, piece.stop):
                 scores = np.zeros((rows, columns), dtype=np.uint16)
                 score_places(self._coarse, first, self._cell_m, some, headings[number], scores)
@@ -99,11 +102,7 @@ def _peaks(squares: Counts, best: Bytes, count: int) -> tuple[Indices, Indices, 
     corridors look much the same both ways, and from one end to the other, so that the best of all
     neighbours would leave most of a corridor out.
     """
-    headings = len(squares)
-    best_heading = squares.argmax(axis=0)
-    turned = np.mod(np.arange(headings)[:, None, None] - best_heading, headings)
-    other_half = (turned >= headings // 4) & (turned < headings - headings // 4)
-    other_heading = np.where(other_half, squares, 0).argmax(axis=0)
+    best_heading, other_heading = best_headings(squares)
     found = []
     for chosen in (best_heading, other_heading):
         values = np.take_along_axis(squares, chosen[None], axis=0)[0]
@@ -115,6 +114,36 @@ def _peaks(squares: Counts, best: Bytes, count: int) -> tuple[Indices, Indices, 
         found.append(np.stack((heading, row, column)))
     heading, row, column = np.concatenate(found, axis=1)
     return heading, row, column
+
+
+@compiled
+def best_headings(squares: Counts) -> tuple[Indices, Indices]:
+    """The best heading of each square, and the best of those that face the other way."""
+    headings, rows, columns = squares.shape
+    best = np.zeros((rows, columns), dtype=np.int64)
+    other = np.zeros((rows, columns), dtype=np.int64)
+    most = np.zeros((rows, columns), dtype=np.uint16)
+    for heading in range(headings):
+        for row in range(rows):
+            for column in range(columns):
+                if squares[heading, row, column] > most[row, column]:
+                    most[row, column] = squares[heading, row, column]
+                    best[row, column] = heading
+    most[:] = 0
+    aside = headings // 4
+    for heading in range(headings):
+        for row in range(rows):
+            for column in range(columns):
+                turned = heading - best[row, column]
+                if turned < 0:
+                    turned += headings
+                if (
+                    aside <= turned < headings - aside
+                    and squares[heading, row, column] > most[row, column]
+                ):
+                    most[row, column] = squares[heading, row, column]
+                    other[row, column] = heading
+    return best, other
 
 
 def distinct(places: Floats) -> list[int]:

@@ -142,7 +142,7 @@ class EnmlLocalizer:
         self._probation_m -= moved_m
         self._weigh_place()
         if self._is_lost or self._probation_m > 0.0:
-            covariance = self._look_for_place(covariance)
+            covariance = self._look_for_place(moved_m, covariance)
         self._search_at_once = False
         return self._estimate(covariance)
 
@@ -241,7 +241,7 @@ class EnmlLocalizer:
             track.advance(np.zeros(3), *self._seen)
         return track
 
-    def _look_for_place(self, covariance: Floats) -> Floats:
+    def _look_for_place(self, moved_m: float, covariance: Floats) -> Floats:
         """Search the map every so often; take the episode to where it clearly belongs."""
         track, recovery = self._track, self._recovery
         at_once = self._search_at_once
@@ -252,7 +252,7 @@ class EnmlLocalizer:
             recovery.begin(
                 self._unplaced.episode, followed, self._since_lost_m, drifted=self._drifted
             )
-        found = recovery.go_on(to_its_end=at_once)
+        found = recovery.go_on(moved_m, to_its_end=at_once)
         if found is None or (not self._is_lost and same_place(found.pose, track.pose)):
             return covariance
         moved = self._believe(found.pose)

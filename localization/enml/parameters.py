@@ -120,7 +120,7 @@ class EnmlParameters:
     alignment_believed_above: float = 0.55
     """The pre-alignment is followed if it lays more than this share of a scan on something (ours:
     0.61 to 0.88 in the worst hundredth of drives)."""
-    found_above: float = 7.0
+    found_above: float = 10.0
     """How much likelier what is seen has to be at the place where a lost robot is found than
     anywhere (ours; logarithm per scan)."""
     known_within_m: float = 2.5

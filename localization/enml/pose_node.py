@@ -4,9 +4,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from mend.localization.enml.motion_model import Travel
+from mend.localization.enml.point_buckets import PointBuckets
 from mend.localization.enml.problem import Floats, Indices
 from mend.localization.points import DEFAULT_MAX_RANGE_M, ScanPoints
 from mend.localization.scan import Scan
@@ -37,7 +37,8 @@ class PoseNode:
 
     `travel` leads here from the pose before. `cast_pose` is where `seen` (the segment of the map
     along each bearing) and `ltf` were found; None as long as nothing was. `gate_m` is the widest
-    distance from a line at which a point of this pose still counts as on it.
+    distance from a line at which a point of this pose still counts as on it. `buckets` find the
+    points near a place.
     """
 
     identity: int
@@ -48,8 +49,7 @@ class PoseNode:
     sensor_offset: Floats
     travel: Travel
     gate_m: float
-    tree: cKDTree = field(init=False)
-    has_normal: NDArray[np.bool_] = field(init=False)
+    buckets: PointBuckets
     cast_pose: Floats | None = None
     cast_gate_m: float = 0.0
     expected_m: Floats = field(default_factory=lambda: np.zeros(0))
@@ -59,16 +59,23 @@ class PoseNode:
 
     def __post_init__(self) -> None:
         points = self.scan_points
-        self.tree = cKDTree(points.points) if len(points) else None
-        self.has_normal = np.any(points.normals != 0.0, axis=1)
         self.is_ltf = np.zeros(len(points), dtype=np.bool_)
         self.is_stf = np.zeros(len(points), dtype=np.bool_)
 
     @classmethod
     def of(
-        cls, identity: int, scan: Scan, scan_points: ScanPoints, travel: Travel, gate_m: float
+        cls,
+        identity: int,
+        scan: Scan,
+        scan_points: ScanPoints,
+        travel: Travel,
+        gate_m: float,
+        alike_within_m: float,
     ) -> "PoseNode":
-        """What one scan contributes to the episode."""
+        """What one scan contributes to the episode.
+
+        Points of two scans within `alike_within_m` of each other may be the same thing.
+        """
         return cls(
             identity,
             scan_points,
@@ -78,6 +85,7 @@ class PoseNode:
             scan.sensor_offset,
             travel,
             gate_m,
+            PointBuckets.of(scan_points, alike_within_m),
         )
 
     @property

@@ -20,10 +20,10 @@ from mend.localization.pose import Poses, compose, relative, transform
 from mend.maps.segment_grid import SegmentGrid
 
 _THINNED_M = 0.25
-_CANDIDATES = 2000
+_CANDIDATES = 4000
 """So many places of the lattice are glanced at with a few beams..."""
 _BEAMS_GLANCED = 60
-_CLIMBERS = 150
+_CLIMBERS = 300
 """... the best of them moved to where the points fit, and weighed by two scans..."""
 _NEAR = 40
 """... and so many near where the robot is followed, too..."""
@@ -38,9 +38,11 @@ _SCANS_POLISHED = 3
 _SCANS_WEIGHED = 6
 _LEAST_DOUBT = 0.5
 """The share of the lead that is always needed, and all that is where the robot is followed."""
-_PIECES_PER_UPDATE = 6
-_BEAMS_PER_PIECE = 50_000
-"""So many rays of the map are a piece of work: some milliseconds."""
+_PIECES_PER_M = 20.0
+_FEWEST_PIECES, _MOST_PIECES = 10, 16
+"""So many pieces of work an update does: more where updates are farther apart."""
+_RAYS_PER_PIECE_M = 300_000.0
+"""So many metres of rays over the map are a piece of work: two or three milliseconds."""
 
 MayBeAt = Callable[[float, float], bool]
 """Whether the robot may be at a point of the map at all, x and y in metres."""
@@ -127,12 +129,14 @@ class Recovery:
         self.stop()
         self._work = self._search(_Evidence.of(episode, followed, path_m, drifted))
 
-    def go_on(self, *, to_its_end: bool = False) -> Found | None:
+    def go_on(self, moved_m: float, *, to_its_end: bool = False) -> Found | None:
         """Do what fits into one update; at the search's end where the robot is, if that is clear.
 
-        Nothing where no search goes on.
+        `moved_m` is how far the robot has driven since the update before. Nothing where no search
+        goes on.
         """
-        for _ in count() if to_its_end else range(_PIECES_PER_UPDATE):
+        some = int(np.clip(_PIECES_PER_M * moved_m, _FEWEST_PIECES, _MOST_PIECES))
+        for _ in count() if to_its_end else range(some):
             if self._work is None:
                 break
             try:
@@ -170,7 +174,7 @@ class Recovery:
         """The places of the lattice that look right, each where what is seen fits best."""
         wide = yield from self._lattice.candidates(seen.points, self._everywhere, _CANDIDATES)
         merits = np.zeros(len(wide))
-        for piece in _portions(wide, seen.glance):
+        for piece in self._portions(wide, seen.glance):
             glances(self._grid, seen.glance, wide[piece], merits[piece])
             yield
         places = wide[np.argsort(-merits, kind="stable")[:_CLIMBERS]]
@@ -198,7 +202,7 @@ class Recovery:
         return max([found, *weighed], key=lambda each: each.score)
 
     def _polish(self, places: Floats, looks: Looks, gates_m: Floats) -> Work[None]:
-        for piece in _portions(places, looks, 2 * len(gates_m)):
+        for piece in self._portions(places, looks, 2 * len(gates_m)):
             polish(self._grid, looks, gates_m, self._cos_max_angle, places[piece])
             yield
 
@@ -211,11 +215,16 @@ class Recovery:
     def _weigh(self, places: Floats, looks: Looks) -> Work[list[Found]]:
         """Places with what speaks for each."""
         scores = np.zeros(len(places))
-        for piece in _portions(places, looks):
+        for piece in self._portions(places, looks):
             log_likelihoods(self._grid, looks, places[piece], self._anywhere.model, scores[piece])
             yield
         scores -= self._anywhere.mean_log_likelihood(looks)
         return [Found(*each) for each in zip(places, scores.tolist(), strict=True)]
+
+    def _portions(self, places: Floats, looks: Looks, times: int = 1) -> Iterator[slice]:
+        """Pieces of work: for each place all beams of some looks are cast, so many times."""
+        rays_m = times * len(looks.bearings) * self._anywhere.mean_range_m
+        return pieces(len(places), int(_RAYS_PER_PIECE_M / max(rays_m, 1.0)))
 
     def _clear_winner(
         self, found: list[Found], here: Found | None, won: Poses | None, seen: "_Evidence"
@@ -237,7 +246,8 @@ class Recovery:
         doubt = max(_LEAST_DOUBT, 1.0 - seen.path_m / its.recovery_patience_m)
         if here is not None and same_place(place, here.pose):
             doubt = _LEAST_DOUBT
-        lead = merits[best] - max(rivals, default=0.0)
+        # The right place may be among those that were not found.
+        lead = merits[best] - max([its.found_above, *rivals])
         again = won is not None and same_place(place, won)
         return found[best] if again or lead >= doubt * its.recovery_lead else None
 
@@ -286,11 +296,6 @@ class _Evidence:
             path_m=path_m,
             drifted=drifted,
         )
-
-
-def _portions(places: Floats, looks: Looks, times: int = 1) -> Iterator[slice]:
-    """Pieces of work: for each place all beams of some looks are cast, so many times."""
-    return pieces(len(places), _BEAMS_PER_PIECE // (times * max(len(looks.bearings), 1)))
 
 
 def _poses_of(found: list[Found]) -> Floats:
