@@ -337,6 +337,17 @@ async def scene_out_of_reach(
     return page
 
 
+async def part_to_be_added(_: Service, open_page: OpenPage) -> Page:
+    """A part is selected, with what it is turned and resized by, and another one is described."""
+    page = await open_page("/edit_scene")
+    box = page.get_by_role("button", name="red box, part")
+    await box.focus()
+    await page.keyboard.press("n")
+    await expect(page.get_by_role("form", name="A new part")).to_be_visible()
+    await expect(page.get_by_role("status").filter(has_text="No mistakes")).to_be_visible()
+    return page
+
+
 async def robot_models(service: Service, open_page: OpenPage) -> Page:
     """One of two robots has a model, and a file is about to be given for the other."""
     await give_model(service, "lamp", packed())
@@ -554,6 +565,7 @@ SITUATIONS: dict[str, Situation] = {
         wrong_tree,
         scenes,
         scene_out_of_reach,
+        part_to_be_added,
         robot_models,
         delete_tree,
         start_run,
