@@ -10,7 +10,7 @@ from mend.server.runtime.views import RunStatus
 
 
 @dataclass(frozen=True, slots=True)
-class OpenQuestion:
+class WaitingQuestion:
     """A question that waits for people, and that nobody is on.
 
     `asked` has whom it was put to, one time after the other. `may_go_on`: whether it may be put to
@@ -37,7 +37,7 @@ class Duty:
 
     there: Sequence[str] = ()
     on: Sequence[tuple[UUID, str]] = ()
-    questions: Sequence[OpenQuestion] = ()
+    questions: Sequence[WaitingQuestion] = ()
 
     @property
     def free(self) -> list[str]:
@@ -74,7 +74,7 @@ def duty_of(there: Sequence[str], runs: Iterable[RunState]) -> Duty:
     on = [(each.id, helper) for _, each in open_dialogues for helper in _helpers_on(each)]
     taken = {dialogue for dialogue, _ in on}
     waiting = [
-        (ask.seq, OpenQuestion(each.id, tuple(each.asked_of), _may_go_on(run, each)))
+        (ask.seq, WaitingQuestion(each.id, tuple(each.asked_of), _may_go_on(run, each)))
         for run, each in open_dialogues
         if (ask := each.open_ask) is not None and each.id not in taken
     ]

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from mend.server.dialogues.duty import Duty, OpenQuestion
+from mend.server.dialogues.duty import Duty, WaitingQuestion
 from mend.server.dialogues.escalation import (
     EscalationPolicy,
     Exhausted,
@@ -96,13 +96,13 @@ def test_what_a_robot_does_not_wait_for_is_asked_of_somebody_who_is_there() -> N
     assert first_helper(policy, Duty(["dan"]), waits=False) == "dan"
     assert first_helper(policy, Duty(), waits=False) == "ana"
     assert first_helper(policy, Duty(["dan"])) == "ana"
-    busy = Duty(["dan"], questions=[OpenQuestion(UUID(int=1), ["dan"])])
+    busy = Duty(["dan"], questions=[WaitingQuestion(UUID(int=1), ["dan"])])
     assert first_helper(policy, busy, waits=False) == "dan"
     assert first_helper(policy, Duty(["dan"], on=[(UUID(int=1), "dan")]), waits=False) == "ana"
 
 
-def put(number: int, *asked: str | None, may_go_on: bool = True) -> OpenQuestion:
-    return OpenQuestion(UUID(int=number), asked, may_go_on)
+def put(number: int, *asked: str | None, may_go_on: bool = True) -> WaitingQuestion:
+    return WaitingQuestion(UUID(int=number), asked, may_go_on)
 
 
 TWO = EscalationPolicy(helpers=("ana", "ben"), repeats=1)
