@@ -17,6 +17,7 @@ SetLimitName = Literal[
     "uploaded_chars",
     "model_bytes",
     "models_bytes",
+    "waiting_models",
     "waiting_chars",
     "check_s",
     "running_runs",
@@ -90,6 +91,8 @@ class Limits(BaseModel):
     """Bytes of the files of one uploaded robot model, unpacked, each as often as it is drawn."""
     models_bytes: AtLeastOne = 512 * 1024**2
     """Bytes of all uploaded robot models as they are kept, packed."""
+    waiting_models: AtLeastOne = 16
+    """Uploaded robot models that are being checked or wait for it; one of each may wait."""
     waiting_chars: AtLeastOne = 64 * 1024**2
     """Characters of what waits to be read and checked as it is large; one piece each may wait."""
     check_s: Seconds = 120.0

@@ -284,6 +284,11 @@ class Transcript:
         return [_line(event, "", f"nobody answered: {how} {event.to}", Tone.SETBACK)]
 
     @lines.register
+    def _(self, event: ev.HandedOn) -> list[Line]:
+        text = f"{event.helper} is busy: the question goes to {event.to}"
+        return [_line(event, "", text, Tone.WATCHED)]
+
+    @lines.register
     def _(self, event: ev.HelpAwaited) -> list[Line]:
         how = "waits to feel" if event.help in _FELT else "looks for"
         text = f"{how} {_promised(event)} until {event.until:.1f} s"

@@ -115,6 +115,7 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     Endpoint("enrol_robot", "POST", "/api/robots/enrol", OPEN),
     Endpoint("get_picture", "GET", "/api/pictures/{picture}", Role.VIEWER),
     Endpoint("list_models", "GET", "/api/models", Role.VIEWER),
+    Endpoint("get_model", "GET", "/api/models/{model}", Role.VIEWER),
     Endpoint("put_model", "PUT", "/api/models/{model}", Role.OPERATOR),
     Endpoint("delete_model", "DELETE", "/api/models/{model}", Role.OPERATOR),
     Endpoint("put_own_model", "PUT", "/api/robots/own_model", Role.ROBOT),

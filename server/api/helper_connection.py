@@ -30,6 +30,7 @@ TRY_AGAIN_LATER = 1013
 
 FIRST_MESSAGE_S = 5.0
 MAX_REASON_CHARS = 100
+NO_LONGER_SIGNED_IN = "you are no longer signed in"
 """A close frame has room for 123 bytes."""
 
 
@@ -158,7 +159,7 @@ class HelperConnection(ABC, Generic[Query]):
         """Why the helper may not send such a message, with the role that they have now."""
         caller = self._parts.access.renewed(self._caller)
         if caller is None:
-            return problem(401, "you are no longer signed in")
+            return problem(401, NO_LONGER_SIGNED_IN)
         self._caller = caller
         needed, role = needed_for_message(self._path, kind), caller.principal.role
         return None if needed is None or role.may(needed) else forbidden(needed, role)

@@ -1,5 +1,6 @@
 """The models of robots over REST: their files, for drawing them, and robots' own ones."""
 
+from collections.abc import Iterator
 from itertools import chain
 from typing import Annotated, Any
 
@@ -61,6 +62,30 @@ async def list_models(
         for each in worlds.names()
     ]
     return [*built_in, *map(_view, services.models.own.all())][offset : offset + limit]
+
+
+@router.get(
+    "/models/{model}",
+    operation_id="get_model",
+    response_class=Response,
+    responses={
+        200: {"content": {ARCHIVE: {}}, "description": "A ZIP, as it may be given again."},
+        304: {"description": "It is still the one of this `If-None-Match`."},
+        **documented(401, 403, 404, 421, 422, 500),
+    },
+)
+async def get_model(model: ServedName, request: Request, services: WithServices) -> Response:
+    """An uploaded model with all of its files."""
+    if model in services.models.worlds:
+        raise NotFoundError(
+            f"the robot model '{model}' is that of a world, of which there is no archive: take its "
+            f"files from /api/models/{model}/{URDF} on"
+        )
+    own = _uploaded(services, model)
+    headers = {**_headers(f'"{own.version}"'), "Cache-Control": "no-cache"}
+    if _is_known(request, headers):
+        return Response(status_code=304, headers=headers)
+    return await _in_pieces(own.whole(), own.stored_bytes, ARCHIVE, headers)
 
 
 CHANGES = documented(401, 403, 409, 413, 415, 421, 422, 503)
@@ -159,10 +184,7 @@ async def get_model_file(
 ) -> Response:
     """A model's description (`robot.urdf`), or a file that it names relative to itself."""
     if model not in services.models.worlds:
-        own = services.models.own.get(model)
-        if own is None:
-            raise NotFoundError(f"there is no robot model '{model}'")
-        return await _own_file(own, file, request)
+        return await _own_file(_uploaded(services, model), file, request)
     found = await run_in_threadpool(services.models.worlds.file, model, file)
     stat = found.stat()
     headers = _headers(f'"{stat.st_mtime_ns:x}-{stat.st_size:x}"')
@@ -171,15 +193,28 @@ async def get_model_file(
     return FileResponse(found, media_type=_media_type(file), headers=headers, stat_result=stat)
 
 
+def _uploaded(services: Services, model: str) -> OwnModel:
+    own = services.models.own.get(model)
+    if own is None:
+        raise NotFoundError(f"there is no robot model '{model}'")
+    return own
+
+
 async def _own_file(own: OwnModel, file: str, request: Request) -> Response:
     headers = _headers(f'"{own.version}"')
     if _is_known(request, headers):
         return Response(status_code=304, headers=headers)
-    # In pieces, as a few clients that read slowly would otherwise take the room of as many files.
-    headers["Content-Length"] = str(own.sizes[own.inside(file)])
-    pieces = own.pieces(file)
+    size = own.sizes[own.inside(file)]
+    return await _in_pieces(own.pieces(file), size, _media_type(file), headers)
+
+
+async def _in_pieces(
+    pieces: Iterator[bytes], size: int, media_type: str, headers: dict[str, str]
+) -> Response:
+    """A few clients that read slowly would otherwise take the room of as many files."""
     first = await run_in_threadpool(next, pieces, b"")
-    return StreamingResponse(chain([first], pieces), media_type=_media_type(file), headers=headers)
+    headers = {**headers, "Content-Length": str(size)}
+    return StreamingResponse(chain([first], pieces), media_type=media_type, headers=headers)
 
 
 def _headers(etag: str) -> dict[str, str]:

@@ -30,6 +30,7 @@ SUMMARIES = {
     "journal": "Check, prune, back up and restore a journal.",
     "scene": "Make up scenes.",
     "steer": "Steer a run of a service that is there.",
+    "model": "List, give and delete models of robots.",
     "request": "Ask a building's robots for something.",
     "site": "Open, list, show and close worlds that stay.",
 }

@@ -6,9 +6,10 @@ from uuid import UUID
 
 import typer
 
+from mend.server.cli.asked_service import AskedService
 from mend.server.cli.failures import CommandLineError
 from mend.server.cli.rows import print_rows
-from mend.server.cli.site import SERVICE, Token, Url, asked
+from mend.server.cli.shared_options import with_shared_options
 
 if TYPE_CHECKING:
     from mend.server.client import MendClient
@@ -29,11 +30,12 @@ AtSite = Annotated[
 
 
 @app.command()
+@with_shared_options
 def make(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A request file.")],
     site: AtSite = None,
-    url: Url = SERVICE,
-    token: Token = None,
+    *,
+    service: AskedService,
 ) -> None:
     """Make the requests of a file, and print when each is expected to be done."""
     from mend.fleet.request_file import read_request_file
@@ -49,25 +51,27 @@ def make(
         at = await _site(client, site)
         return [await client.make_request(each, at) for each in requests]
 
-    _print(asked(url, token, make_all))
+    _print(service.asked(make_all))
 
 
 @app.command("list")
-def list_requests(site: AtSite = None, url: Url = SERVICE, token: Token = None) -> None:
+@with_shared_options
+def list_requests(site: AtSite = None, *, service: AskedService) -> None:
     """List the requests that are open, and the last ones that are over."""
 
     async def listed(client: "MendClient") -> list["RequestView"]:
         return await client.requests(await _site(client, site))
 
-    _print(asked(url, token, listed))
+    _print(service.asked(listed))
 
 
 @app.command()
+@with_shared_options
 def cancel(
     name: Annotated[str, typer.Argument(metavar="NAME", help="The request's name.")],
     site: AtSite = None,
-    url: Url = SERVICE,
-    token: Token = None,
+    *,
+    service: AskedService,
 ) -> None:
     """Want something no more; what is fetched goes back to where it came from."""
 
@@ -75,7 +79,7 @@ def cancel(
         await client.cancel_request(name, await _site(client, site))
         return f"'{name}' is no longer wanted"
 
-    typer.echo(asked(url, token, cancel_it))
+    typer.echo(service.asked(cancel_it))
 
 
 async def _site(client: "MendClient", said: str | None) -> UUID | None:

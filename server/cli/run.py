@@ -9,8 +9,8 @@ from typing import Annotated
 
 import typer
 
+from mend.server.cli.asked_service import SERVICE
 from mend.server.cli.failures import INTERRUPTED, CommandLineError, told_plainly
-from mend.server.cli.site import SERVICE
 from mend.server.cli.talk import TOKEN_VARIABLE
 
 

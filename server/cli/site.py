@@ -1,23 +1,16 @@
 """`mend site`: simulated worlds that stay, of a service that is there."""
 
-import asyncio
-import os
-from collections.abc import Awaitable, Callable
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mend.server.cli.failures import told_plainly
+from mend.server.cli.asked_service import AskedService
 from mend.server.cli.rows import print_rows
-from mend.server.cli.talk import TOKEN_VARIABLE
+from mend.server.cli.shared_options import with_shared_options
 
 if TYPE_CHECKING:
     from mend.server.client import MendClient
     from mend.server.sites.views import SiteView
-
-T = TypeVar("T")
-
-SERVICE = "http://127.0.0.1:8080"
 
 app = typer.Typer(
     name="site",
@@ -33,11 +26,10 @@ Site = Annotated[
         metavar="SITE", help="Its id, enough of its beginning, or its scene where no other has it."
     ),
 ]
-Url = Annotated[str, typer.Option(help="The service.")]
-Token = Annotated[str | None, typer.Option(help="The service's token; better given as MEND_TOKEN.")]
 
 
 @app.command("open")
+@with_shared_options
 def open_site(
     scene: Annotated[
         str, typer.Argument(metavar="SCENE", help="Its name in the service's library, or a file.")
@@ -64,8 +56,8 @@ def open_site(
             "for somebody who does whatever is asked.",
         ),
     ] = None,
-    url: Url = SERVICE,
-    token: Token = None,
+    *,
+    service: AskedService,
 ) -> None:
     """Open a site and print its id; it stays until it is closed, also over restarts."""
     from mend.server.cli.run_request import checked_request, read_options, read_speed
@@ -84,11 +76,12 @@ def open_site(
         )
         return str((await client.open_site(request)).id)
 
-    typer.echo(asked(url, token, open_it))
+    typer.echo(service.asked(open_it))
 
 
 @app.command("list")
-def list_sites(url: Url = SERVICE, token: Token = None) -> None:
+@with_shared_options
+def list_sites(service: AskedService) -> None:
     """List the sites that are open, and how many of their robots no run has."""
     print_rows(
         [
@@ -99,23 +92,25 @@ def list_sites(url: Url = SERVICE, token: Token = None) -> None:
                 f"{each.opened:%Y-%m-%d %H:%M}",
                 f"{sum(robot.run is None for robot in each.robots)} of {len(each.robots)}",
             )
-            for each in asked(url, token, lambda client: client.sites())
+            for each in service.asked(lambda client: client.sites())
         ],
         ("site", "scene", "world", "opened (UTC)", "free"),
     )
 
 
 @app.command()
-def show(site: Site, url: Url = SERVICE, token: Token = None) -> None:
+@with_shared_options
+def show(site: Site, service: AskedService) -> None:
     """Show one site: its robots, the runs that have them, and where runs have left parts."""
     from mend.server.cli.site_names import find_site
 
-    for line in _described(asked(url, token, lambda client: find_site(client, site))):
+    for line in _described(service.asked(lambda client: find_site(client, site))):
         typer.echo(line)
 
 
 @app.command()
-def close(site: Site, url: Url = SERVICE, token: Token = None) -> None:
+@with_shared_options
+def close(site: Site, service: AskedService) -> None:
     """Close a site for good; no run may be using it."""
     from mend.server.cli.site_names import find_site
 
@@ -124,7 +119,7 @@ def close(site: Site, url: Url = SERVICE, token: Token = None) -> None:
         await client.close_site(found.id)
         return f"site {found.id} is closed"
 
-    typer.echo(asked(url, token, close_it))
+    typer.echo(service.asked(close_it))
 
 
 def _described(site: "SiteView") -> list[str]:
@@ -137,15 +132,3 @@ def _described(site: "SiteView") -> list[str]:
             f"{'free' if each.run is None else f'in run {each.run}'}"
         )
     return [*lines, *(f"{part} is at {place}" for part, place in sorted(site.moved.items()))]
-
-
-def asked(url: str, token: str | None, ask: "Callable[[MendClient], Awaitable[T]]") -> T:
-    """What a service answers. Raises `CommandLineError`."""
-    from mend.server.client import MendClient
-
-    async def asked() -> T:
-        async with MendClient(url, token=token or os.environ.get(TOKEN_VARIABLE)) as client:
-            return await ask(client)
-
-    with told_plainly():
-        return asyncio.run(asked())

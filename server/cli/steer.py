@@ -1,18 +1,21 @@
 """`mend steer`: where a run of a service waits, and what its robots do next."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mend.server.cli.asked_service import AskedService
 from mend.server.cli.local_user import local_user
 from mend.server.cli.rows import print_rows
-from mend.server.cli.site import SERVICE, Token, Url, asked
+from mend.server.cli.shared_options import with_shared_options
 from mend.tasks.autonomy import AutonomyLevel
 
 if TYPE_CHECKING:
     from mend.server.client import MendClient
     from mend.server.runtime.steering_views import NodeSteeringView, SteeringView
+    from mend.server.runtime.views import RunSummary
     from mend.tasks.steering_rules import SteeringAct
 
 app = typer.Typer(
@@ -38,40 +41,57 @@ ACTS = {
 Node = Annotated[
     str, typer.Argument(metavar="NODE", help="Its path, as /0/1, or a name that no other has.")
 ]
-Run = Annotated[
-    str | None,
-    typer.Option(
-        metavar="RUN",
-        help="Its id, enough of its beginning, or its tree where no other run has it; not needed "
-        "where one run alone goes on.",
-    ),
-]
-Reason = Annotated[str, typer.Option(help="Why; the journal keeps it.")]
-By = Annotated[
-    str | None, typer.Option("--as", metavar="NAME", help="Who says so, unless the token does.")
-]
+
+
+@dataclass(frozen=True, slots=True)
+class SteeredRun:
+    """Which run of the service."""
+
+    run: Annotated[
+        str | None,
+        typer.Option(
+            metavar="RUN",
+            help="Its id, enough of its beginning, or its tree where no other run has it; not "
+            "needed where one run alone goes on.",
+        ),
+    ] = None
+
+    async def found(self, client: "MendClient") -> "RunSummary":
+        """Raises `CommandLineError`."""
+        from mend.server.cli.run_names import find_run
+
+        return await find_run(client, self.run)
+
+
+@dataclass(frozen=True, slots=True)
+class Saying:
+    """Who says something of a run, and why."""
+
+    reason: Annotated[str, typer.Option(help="Why; the journal keeps it.")] = ""
+    by: Annotated[
+        str | None, typer.Option("--as", metavar="NAME", help="Who says so, unless the token does.")
+    ] = None
+
+    @property
+    def said_by(self) -> str:
+        return self.by or local_user()
 
 
 def _command(name: str) -> Callable[..., None]:
-    def command(
-        node: Node,
-        run: Run = None,
-        reason: Reason = "",
-        by: By = None,
-        url: Url = SERVICE,
-        token: Token = None,
-    ) -> None:
-        from mend.server.cli.run_names import find_node, find_run
+    @with_shared_options
+    def command(node: Node, *, steered: SteeredRun, saying: Saying, service: AskedService) -> None:
+        from mend.server.cli.run_names import find_node
         from mend.server.cli.run_request import checked_request
         from mend.server.runtime.steering_views import SteerNode
 
         async def steer(client: "MendClient") -> "SteeringView":
-            found = await find_run(client, run)
-            path = await find_node(client, found, node)
-            wish = checked_request(SteerNode, act=name.replace("-", "_"), node=path, reason=reason)
-            return await client.steer(found.id, wish, by or local_user())
+            run = await steered.found(client)
+            path = await find_node(client, run, node)
+            act = name.replace("-", "_")
+            wish = checked_request(SteerNode, act=act, node=path, reason=saying.reason)
+            return await client.steer(run.id, wish, saying.said_by)
 
-        _print(asked(url, token, steer))
+        _print(service.asked(steer))
 
     return command
 
@@ -81,48 +101,48 @@ for act, effect in ACTS.items():
 
 
 @app.command()
+@with_shared_options
 def autonomy(
     level: Annotated[AutonomyLevel, typer.Argument(metavar="off|low|high|full")],
-    run: Run = None,
-    reason: Reason = "",
-    by: By = None,
-    url: Url = SERVICE,
-    token: Token = None,
+    *,
+    steered: SteeredRun,
+    saying: Saying,
+    service: AskedService,
 ) -> None:
     """Say how much the robots of a run do without being asked."""
-    from mend.server.cli.run_names import find_run
     from mend.server.cli.run_request import checked_request
     from mend.server.runtime.steering_views import SetAutonomy
 
     async def steer(client: "MendClient") -> "SteeringView":
-        found = await find_run(client, run)
-        wish = checked_request(SetAutonomy, act="set_autonomy", level=level, reason=reason)
-        return await client.steer(found.id, wish, by or local_user())
+        run = await steered.found(client)
+        wish = checked_request(SetAutonomy, act="set_autonomy", level=level, reason=saying.reason)
+        return await client.steer(run.id, wish, saying.said_by)
 
-    _print(asked(url, token, steer))
+    _print(service.asked(steer))
 
 
 @app.command()
-def show(run: Run = None, url: Url = SERVICE, token: Token = None) -> None:
+@with_shared_options
+def show(*, steered: SteeredRun, service: AskedService) -> None:
     """Show how a run is steered: its autonomy, breakpoints, what is next, and what waits."""
-    from mend.server.cli.run_names import find_run
 
     async def steering(client: "MendClient") -> "SteeringView":
-        return await client.steering((await find_run(client, run)).id)
+        return await client.steering((await steered.found(client)).id)
 
-    _print(asked(url, token, steering))
+    _print(service.asked(steering))
 
 
 @app.command()
-def offers(node: Node, run: Run = None, url: Url = SERVICE, token: Token = None) -> None:
+@with_shared_options
+def offers(node: Node, *, steered: SteeredRun, service: AskedService) -> None:
     """Show what would be taken of a node now, what comes of it, and why the rest would not."""
-    from mend.server.cli.run_names import find_node, find_run
+    from mend.server.cli.run_names import find_node
 
     async def offered(client: "MendClient") -> "NodeSteeringView":
-        found = await find_run(client, run)
-        return await client.steering_offers(found.id, await find_node(client, found, node))
+        run = await steered.found(client)
+        return await client.steering_offers(run.id, await find_node(client, run, node))
 
-    view = asked(url, token, offered)
+    view = service.asked(offered)
     rows: list[tuple[str, ...]] = [
         (_spoken(each.act), "taken", each.effect) for each in view.offered
     ]

@@ -1,35 +1,34 @@
-"""Who is signed in to help, on however many devices, and who of them is on nothing."""
+"""Who is signed in to help, on however many devices."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-
-from mend.server.runtime.dialogue_state import DialogueState
 
 
 class Attendance:
-    """Helpers who hear what robots ask at this moment."""
+    """Helpers who hear what robots ask at this moment.
+
+    `changed` is called when one comes or goes.
+    """
 
     def __init__(self) -> None:
         self._devices: Counter[str] = Counter()
+        self.changed: Callable[[], None] = lambda: None
 
     @contextmanager
     def attending(self, helper: str) -> Iterator[None]:
         """Somebody is there for as long as this lasts."""
         self._devices[helper] += 1
+        self.changed()
         try:
             yield
         finally:
             self._devices[helper] -= 1
             if self._devices[helper] <= 0:
                 del self._devices[helper]
+            self.changed()
 
-    def idle(self, open_dialogues: Iterable[DialogueState]) -> list[str]:
-        """Who is there and on no dialogue, who came first first."""
-        busy = set[str]()
-        for dialogue in open_dialogues:
-            if dialogue.claim is not None:
-                busy.add(dialogue.claim.helper)
-            if dialogue.awaiting is not None:
-                busy.add(dialogue.awaiting.helper)
-        return [each for each in self._devices if each not in busy]
+    @property
+    def there(self) -> list[str]:
+        """Who is there, who came first first."""
+        return list(self._devices)

@@ -36,17 +36,28 @@ class OwnModel:
         """
         try:
             with zipfile.ZipFile(self.archive) as archive:
-                if json.loads(archive.comment) != [self.name, self.version]:
-                    raise self._gone()
+                self._require_this(archive)
                 with archive.open(self.inside(file)) as opened:
                     while piece := opened.read(PIECE_BYTES):
                         yield piece
         except FileNotFoundError:
             raise self._gone() from None
         except (OSError, *BROKEN) as error:
-            raise UnreadableError(
-                f"the robot model '{self.name}' cannot be read ({error}): upload it again"
-            ) from error
+            raise self._unreadable(error) from error
+
+    def whole(self) -> Iterator[bytes]:
+        """Its archive, a piece at a time; the first tells how it is. Raises as `pieces`."""
+        try:
+            with self.archive.open("rb") as opened:
+                with zipfile.ZipFile(opened) as archive:
+                    self._require_this(archive)
+                opened.seek(0)
+                while piece := opened.read(PIECE_BYTES):
+                    yield piece
+        except FileNotFoundError:
+            raise self._gone() from None
+        except (OSError, *BROKEN) as error:
+            raise self._unreadable(error) from error
 
     def inside(self, file: str) -> str:
         """The name that a file has in the archive. Raises `NotFoundError`."""
@@ -54,6 +65,15 @@ class OwnModel:
         if file not in self.sizes:
             raise NotFoundError(f"the robot model '{self.name}' has no file of this name")
         return file
+
+    def _require_this(self, archive: zipfile.ZipFile) -> None:
+        if json.loads(archive.comment) != [self.name, self.version]:
+            raise self._gone()
+
+    def _unreadable(self, error: Exception) -> UnreadableError:
+        return UnreadableError(
+            f"the robot model '{self.name}' cannot be read ({error}): upload it again"
+        )
 
     def _gone(self) -> NotFoundError:
         return NotFoundError(f"there is no robot model '{self.name}' of this version any more")

@@ -28,6 +28,7 @@ from mend.server.models.checked_archive import (
 )
 from mend.server.models.own_model import OwnModel, read_label, with_label
 from mend.server.off_loop import OffLoop
+from mend.server.one_by_one import OneByOne
 
 log = logging.getLogger(__name__)
 
@@ -58,6 +59,8 @@ class OwnModels:
         self._off_loop = off_loop
         self._utc_now = utc_now
         self._taken = taken
+        # Each may be small, and take long all the same.
+        self._checks = OneByOne(limits.waiting_models, "robot models", "waiting_models")
         self._changing = asyncio.Lock()
         self._models = {each.name: each for each in _found_in(folder)}
         self.changed: Callable[[], None] = lambda: None
@@ -75,11 +78,12 @@ class OwnModels:
         """Check a model and keep it: an archive if it is `packed`, else a URDF alone.
 
         Returns it, and whether it is new under its name. Raises `WrongInputError`, `ConflictError`
-        (a name that is taken, no room), `UnavailableError` and `JournalWriteError`; what was kept
-        before is then there as it was.
+        (a name that is taken, no room), `UnavailableError` (also where too many wait to be checked)
+        and `JournalWriteError`; what was kept before is then there as it was.
         """
         folder = self._folder_for(name)
-        checked = await self._check(sent, packed)
+        async with self._checks.turn(1):
+            checked = await self._check(sent, packed)
         archive = with_label(checked.archive, name, checked.version)
         async with self._changing:
             before = self._models.get(name)

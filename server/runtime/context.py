@@ -44,6 +44,7 @@ class RunContext:
     """A run's state and the one way to change it: commit events, then fold them.
 
     While it is `patient`, a commit waits until the journal can be written; else it is refused.
+    `followed` is called with what the state has followed.
     """
 
     def __init__(
@@ -54,6 +55,7 @@ class RunContext:
         settings: RunSettings,
         utc_now: Callable[[], datetime],
         refusals: Refusals,
+        followed: Callable[[Sequence[Event]], None] = lambda _: None,
     ) -> None:
         self.state = state
         self.clock = clock
@@ -61,6 +63,7 @@ class RunContext:
         self.utc_now = utc_now
         self.refusals = refusals
         self._journal = journal
+        self._followed = followed
         self.patient = True
         self._noting: asyncio.Task[list[Event]] | None = None
 
@@ -97,6 +100,7 @@ class RunContext:
         def fold(numbered: list[Event]) -> None:
             for event in numbered:
                 self.state.fold(event)
+            self._followed(numbered)
 
         return await self._journal.append(entry, fold, patient=self.patient)
 

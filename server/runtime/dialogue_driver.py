@@ -10,7 +10,9 @@ from mend.dialogue.worded import joined, worded
 from mend.dialogue.wording import sentence
 from mend.errors import ConflictError, NotFoundError
 from mend.server.dialogues.answers import AnswerSource
+from mend.server.dialogues.duty import Duty
 from mend.server.dialogues.escalation import (
+    NOBODY,
     EscalationPolicy,
     Exhausted,
     Mail,
@@ -18,6 +20,7 @@ from mend.server.dialogues.escalation import (
     Standing,
     ToHelper,
     first_helper,
+    handed_on,
     next_rung,
 )
 from mend.server.errors import LostRaceError
@@ -47,7 +50,7 @@ SendMail = Callable[[ev.Escalated | ev.SuspectedFalseAlarm, DialogueState], None
 class DialogueDriver:
     """Drives the dialogues of one run. `person` is None where nobody is simulated.
 
-    `idle`: who is signed in to help and on nothing.
+    `duty`: who is signed in to help, and what all runs ask of whom.
     """
 
     def __init__(
@@ -57,10 +60,10 @@ class DialogueDriver:
         policy: EscalationPolicy,
         person: Person | None,
         send_mail: SendMail,
-        idle: Callable[[], Sequence[str]] = tuple,
+        duty: Callable[[], Duty] = lambda: NOBODY,
     ) -> None:
         self._context = context
-        self._idle = idle
+        self._duty = duty
         self._answers = answers
         self._policy = policy
         self._promises = Promises(context, person)
@@ -106,6 +109,8 @@ class DialogueDriver:
         assert ask.deadline is not None, "every question has a deadline"
         if has_come(clock, ask.deadline):
             await self._nobody_answered(dialogue, ask, proxy)
+            return True
+        if await self._handed_on(dialogue, ask, proxy):
             return True
         if proxy.free:
             due = min(ask.deadline, scripted[1]) if scripted else ask.deadline
@@ -291,7 +296,7 @@ class DialogueDriver:
             await self._converse(dialogue, "silence", [], proxy)
             return
         make = self._make(dialogue)
-        rung = next_rung(self._policy, _standing(dialogue), self._idle())
+        rung = next_rung(self._policy, _standing(dialogue), self._duty(), dialogue.id)
         if isinstance(rung, Exhausted):
             await self._converse(dialogue, "silence", [], proxy)
             return
@@ -305,6 +310,16 @@ class DialogueDriver:
                 escalated = make.escalated("mail", ", ".join(addresses))
                 await self._context.commit([escalated, again])
                 self._send_mail(escalated, dialogue)
+
+    async def _handed_on(self, dialogue: DialogueState, ask: ev.Prompt, proxy: RobotProxy) -> bool:
+        """Put a question that waits for somebody busy to somebody idle; True if that was now."""
+        helper, to = ask.to, handed_on(self._policy, self._duty()).get(dialogue.id)
+        if helper is None or to is None:
+            return False
+        rung = ToHelper(to, self._policy.answer_within_s)
+        again = self._ask_again(dialogue, ask, proxy, rung)
+        await self._context.commit([self._make(dialogue).handed_on(helper, to), again])
+        return True
 
     def _ask_again(
         self,
@@ -321,12 +336,12 @@ class DialogueDriver:
         to = ask.to if isinstance(rung, Mail) else rung.helper
         mailed = dialogue.mailed or isinstance(rung, Mail)
         standing = Standing((*dialogue.asked_of, to), mailed)
-        effect = joined(self._if_silent(standing), question.timeout_effect)
+        effect = joined(self._if_silent(standing, dialogue.id), question.timeout_effect)
         return self._make(dialogue).repeat(ask, question, deadline, to, effect)
 
-    def _if_silent(self, standing: Standing) -> str:
+    def _if_silent(self, standing: Standing, dialogue: UUID) -> str:
         """What is done before silence counts as an answer, as the beginning of a sentence."""
-        match next_rung(self._policy, standing, self._idle()):
+        match next_rung(self._policy, standing, self._duty(), dialogue):
             case Repeat():
                 return worded("I ask again; if nobody answers at all:")
             case ToHelper(helper=helper):
@@ -393,11 +408,12 @@ class DialogueDriver:
     ) -> list[ev.Event]:
         """The events of turns; only where the robot `waits` for an answer is it asked for again."""
         now, settings = self._context.clock.now(), self._context.settings
-        to = first_helper(self._policy, self._idle(), waits=waits)
+        duty = self._duty().without(make.dialogue)
+        to = first_helper(self._policy, duty, waits=waits, answering=helper)
         return make.of_turns(
             turns,
             ask_deadline=now + self._policy.answer_within_s,
-            if_silent=self._if_silent(Standing((to,))) if waits else "",
+            if_silent=self._if_silent(Standing((to,)), make.dialogue) if waits else "",
             to=to,
             help_until=now + settings.help_window_s,
             helper=helper,

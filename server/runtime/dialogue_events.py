@@ -36,10 +36,10 @@ class DialogueEvents:
         self._stamp = stamp
         self._node = {"node": raised.node, "name": raised.name}
         self._issue = {"robot": raised.robot, "issue": raised.issue, "object": raised.object}
-        self._dialogue = dialogue
+        self.dialogue = dialogue
 
     def _fields(self) -> dict[str, Any]:
-        return {**self._stamp(), **self._node, **self._issue, "dialogue": self._dialogue}
+        return {**self._stamp(), **self._node, **self._issue, "dialogue": self.dialogue}
 
     def opened(self, *, scripted: bool) -> ev.DialogueOpened:
         return ev.DialogueOpened(**self._fields(), scripted=scripted)
@@ -114,6 +114,9 @@ class DialogueEvents:
 
     def escalated(self, channel: str, to: str) -> ev.Escalated:
         return ev.Escalated.model_validate({**self._fields(), "channel": channel, "to": to})
+
+    def handed_on(self, helper: str, to: str) -> ev.HandedOn:
+        return ev.HandedOn(**self._fields(), helper=helper, to=to)
 
     def claimed(self, helper: str, until: datetime, author: ev.Author | None) -> ev.Claimed:
         return ev.Claimed(**self._fields(), helper=helper, lease_until=until, author=author)

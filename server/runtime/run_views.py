@@ -265,6 +265,7 @@ def robot_view(
         reach=hello.reach.model_dump() if hello and hello.reach else None,
         run=state_of_run.id if state_of_run else None,
         state=state,
+        model=hello.shows.model if hello and hello.shows else None,
     )
 
 

@@ -255,6 +255,8 @@ class RobotView(View):
     reach: dict[str, float] | None
     run: UUID | None
     state: Literal["idle", "working", "holding", "lost"]
+    model: str | None = None
+    """The name of what it says it looks like."""
 
 
 class WorldView(View):

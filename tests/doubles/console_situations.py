@@ -6,15 +6,18 @@ from contextlib import suppress
 from typing import Literal
 from uuid import UUID
 
-from console_in_browser import OpenPage
+from console_in_browser import TOKEN, OpenPage
+from gated_robot import gated_robot
 from office_with_fleet import open_office_with_fleet
 from playwright.async_api import Page, expect
 from recorded_service import recorded_events
+from small_model import packed
 from two_boxes import BENCH, BLUE, BOTH, RED
 
 from mend.fleet.requests import DeliverMessage, GoToRoom, Transport
 from mend.maps.building.building import Building
 from mend.maps.building.random_building import random_building
+from mend.server.client import MendClient
 from mend.server.composition import Service
 from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.request_refused import RequestRefusedError
@@ -334,6 +337,39 @@ async def scene_out_of_reach(
     return page
 
 
+async def part_to_be_added(_: Service, open_page: OpenPage) -> Page:
+    """A part is selected, with what it is turned and resized by, and another one is described."""
+    page = await open_page("/edit_scene")
+    box = page.get_by_role("button", name="red box, part")
+    await box.focus()
+    await page.keyboard.press("n")
+    await expect(page.get_by_role("form", name="A new part")).to_be_visible()
+    await expect(page.get_by_role("status").filter(has_text="No mistakes")).to_be_visible()
+    return page
+
+
+async def robot_models(service: Service, open_page: OpenPage) -> Page:
+    """One of two robots has a model, and a file is about to be given for the other."""
+    await give_model(service, "lamp", packed())
+    shown = [{"model": name, "joints": ["elbow"], "objects": []} for name in ("lamp", "crane")]
+    async with (
+        gated_robot(service.robots_url, TOKEN, "arm-1", shows=shown[0]),
+        gated_robot(service.robots_url, TOKEN, "arm-2", shows=shown[1]),
+    ):
+        page = await open_page("/models")
+        await expect(page.get_by_text("Named by arm-2; a gripper")).to_be_visible()
+        file = {"name": "lamp.zip", "mimeType": "application/zip", "buffer": packed()}
+        await page.get_by_label("Give a model").set_input_files(file)
+        await expect(page.get_by_label("Name, as robots say it")).to_have_value("crane")
+    return page
+
+
+async def give_model(service: Service, name: str, archive: bytes) -> None:
+    """Have a model there, as an operator gives it."""
+    async with MendClient(service.url, token=TOKEN) as client:
+        await client.put_model(name, archive)
+
+
 async def delete_tree(service: Service, open_page: OpenPage) -> Page:
     await service.library.trees.save(
         "shelf", "name: shelf\ntree: {behavior: pick_and_place, object: a, place: b}\n"
@@ -529,6 +565,8 @@ SITUATIONS: dict[str, Situation] = {
         wrong_tree,
         scenes,
         scene_out_of_reach,
+        part_to_be_added,
+        robot_models,
         delete_tree,
         start_run,
         requests,

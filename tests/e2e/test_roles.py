@@ -53,6 +53,9 @@ async def test_a_viewer_sees_the_question_and_cannot_answer(consoles: Consoles) 
     await page.goto("/runs")
     await expect(page.get_by_role("heading", name="Runs")).to_be_visible()
     await expect(page.get_by_role("link", name="Start a run")).to_have_count(0)
+    await page.goto("/models")
+    await expect(page.get_by_text("There is no model yet")).to_be_visible()
+    await expect(page.get_by_label("Give a model")).to_have_count(0)
     await page.close()
 
 

@@ -1,9 +1,11 @@
 """Uploaded models are kept over restarts, replaced and deleted; what is refused changes nothing."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
+from contextvars import copy_context
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import ParamSpec, TypeVar
 
 import httpx
 import pytest
@@ -14,12 +16,18 @@ from small_model import BARE, DESCRIPTION, OBJ, STL, packed
 from mend.errors import ConflictError, NotFoundError, UnavailableError, WrongInputError
 from mend.server.access.deeds import deed_of
 from mend.server.access.roles import Role
+from mend.server.asking import asker
+from mend.server.errors import BusyError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import JournalWriteError
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.limits import Limits
+from mend.server.models.own_model import OwnModel
 from mend.server.models.own_models import OwnModels
 from mend.server.off_loop import OffLoop
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 ZIP, XML = {"Content-Type": "application/zip"}, {"Content-Type": "application/xml"}
 ANNA = ev.Author(principal="anna", role=Role.OPERATOR, address=None)
@@ -38,12 +46,17 @@ async def client(service: ServiceUnderTest) -> AsyncIterator[httpx.AsyncClient]:
         yield client
 
 
-def own_models(folder: Path, journal: SqliteJournal, limits: Limits | None = None) -> OwnModels:
+def own_models(
+    folder: Path,
+    journal: SqliteJournal,
+    limits: Limits | None = None,
+    off_loop: OffLoop | None = None,
+) -> OwnModels:
     return OwnModels(
         folder,
         journal,
         limits or Limits(),
-        OffLoop(),
+        off_loop or OffLoop(),
         utc_now=lambda: datetime.now(UTC),
         taken=lambda name: name == "pr2",
     )
@@ -103,6 +116,54 @@ async def test_what_is_refused_leaves_what_was_there(
     assert why in refused.json()["detail"]
     assert (await client.get("/api/models")).json() == [before]
     assert (await client.get(before["urdf"])).text == DESCRIPTION
+
+
+async def test_a_model_is_fetched_whole_and_may_be_given_again(client: httpx.AsyncClient) -> None:
+    kept = (await client.put("/api/models/arm 1", content=packed(), headers=ZIP)).json()
+    fetched = await client.get("/api/models/arm 1")
+    assert fetched.headers["content-type"] == "application/zip"
+    assert fetched.headers["content-length"] == str(len(fetched.content))
+    known = {"If-None-Match": fetched.headers["etag"]}
+    assert (await client.get("/api/models/arm 1", headers=known)).status_code == 304
+    again = await client.put("/api/models/twin", content=fetched.content, headers=ZIP)
+    assert again.json() == {**kept, "name": "twin", "urdf": again.json()["urdf"]}
+    nothing = await client.get("/api/models/other")
+    assert (nothing.status_code, nothing.json()["detail"]) == (
+        404, "there is no robot model 'other'",
+    )  # fmt: skip
+
+
+async def test_so_many_are_checked_or_wait_for_it_at_a_time(tmp_path: Path) -> None:
+    checking, may_end = asyncio.Event(), asyncio.Event()
+
+    class Slow(OffLoop):
+        async def run(
+            self, chars: int, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs
+        ) -> T:
+            checking.set()
+            await may_end.wait()
+            return await super().run(chars, work, *args, **kwargs)
+
+    journal = SqliteJournal(":memory:")
+    models = own_models(tmp_path / "models", journal, Limits(waiting_models=2), Slow())
+
+    def keep(who: str, name: str) -> asyncio.Task[tuple[OwnModel, bool]]:
+        context = copy_context()
+        context.run(asker.set, who)
+        kept = models.keep(name, BARE.encode(), ANNA, packed=False)
+        return asyncio.create_task(kept, context=context)
+
+    taken = [keep("anna", "lamp"), keep("anna", "post")]
+    await checking.wait()
+    with pytest.raises(BusyError, match="too many robot models wait") as refused:
+        await keep("anna", "arm")
+    assert refused.value.limit == "waiting_models"
+    # One of each is taken however many wait.
+    taken.append(keep("ben", "crane"))
+    may_end.set()
+    await asyncio.gather(*taken)
+    assert [each.name for each in models.all()] == ["crane", "lamp", "post"]
+    journal.close()
 
 
 async def test_a_large_file_is_served_whole(client: httpx.AsyncClient) -> None:

@@ -52,6 +52,7 @@ OF_STEERING = {
     "leaf_tried_again",
 }
 OF_CAMERAS = {"recording_begun", "cameras_recorded"}
+OF_CALLING = {"handed_on"}
 OF_PROMISES = {"help_not_seen_yet", "help_reported", "promise_taken_back"}
 OF_PEOPLE = {*OF_PROMISES, *OF_STEERING}
 ADDED_SINCE: dict[str, set[str]] = {
@@ -59,6 +60,7 @@ ADDED_SINCE: dict[str, set[str]] = {
         *OF_NO_RUN,
         *OF_PEOPLE,
         *OF_CAMERAS,
+        *OF_CALLING,
         "clip_recorded",
         "deadline_extended",
         "first_look",
@@ -74,6 +76,7 @@ ADDED_SINCE: dict[str, set[str]] = {
         *OF_NO_RUN,
         *OF_PEOPLE,
         *OF_CAMERAS,
+        *OF_CALLING,
         "node_taken",
         "first_look",
         "looked_anew",
@@ -84,6 +87,7 @@ ADDED_SINCE: dict[str, set[str]] = {
         *OF_NO_RUN,
         *OF_PEOPLE,
         *OF_CAMERAS,
+        *OF_CALLING,
         "node_taken",
         "looked_anew",
         "way_found",
@@ -92,6 +96,7 @@ ADDED_SINCE: dict[str, set[str]] = {
         *OF_NO_RUN,
         *OF_PEOPLE,
         *OF_CAMERAS,
+        *OF_CALLING,
         "node_taken",
         "looked_anew",
         "way_found",
@@ -100,12 +105,13 @@ ADDED_SINCE: dict[str, set[str]] = {
         *OF_NO_RUN,
         *OF_PEOPLE,
         *OF_CAMERAS,
+        *OF_CALLING,
         "node_taken",
         "looked_anew",
         "way_found",
     },
-    "v6": {*OF_NO_RUN, *OF_STEERING, *OF_CAMERAS},
-    "v7": {*OF_NO_RUN, *OF_STEERING, *OF_CAMERAS},
+    "v6": {*OF_NO_RUN, *OF_STEERING, *OF_CAMERAS, *OF_CALLING},
+    "v7": {*OF_NO_RUN, *OF_STEERING, *OF_CAMERAS, *OF_CALLING},
 }
 """The types of events that came after a sample was written."""
 

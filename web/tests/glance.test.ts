@@ -15,7 +15,7 @@ function run(id: string, status: RunStatus, hoursAgo = 1): RunSummary {
 }
 
 function robot(state: RobotView["state"], of: string | null): RobotView {
-  return { robot: "ada", state, run: of, connected: state !== "lost", simulated: false, behaviors: [], cameras: [], reach: null };
+  return { robot: "ada", state, run: of, connected: state !== "lost", simulated: false, behaviors: [], cameras: [], reach: null, model: null };
 }
 
 function glance(seen: Partial<Seen>) {

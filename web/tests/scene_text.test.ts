@@ -144,14 +144,21 @@ describe("the view from above", () => {
   });
 
   it("takes keys for steps and turns, a robot by quarters", () => {
-    const pose = { x: 0.4, y: 0.1, z: null, yaw: 0 };
+    const thing = (kind: Thing["kind"]) => ({ kind, pose: { x: 0.4, y: 0.1, z: null, yaw: 0 }, size: [0.05, 0.06, 0.07] }) as unknown as Thing;
+    const part = thing("object");
     const key = (name: string, shiftKey = false) => ({ key: name, shiftKey, altKey: false, ctrlKey: false, metaKey: false });
-    expect(sceneActionOf(key("ArrowUp"), pose, false)).toEqual({ change: { x: expect.closeTo(0.41) } });
-    expect(sceneActionOf(key("ArrowRight", true), pose, false)).toEqual({ change: { y: expect.closeTo(0.099) } });
-    expect(sceneActionOf(key("q"), pose, false)).toEqual({ change: { yaw: expect.closeTo(Math.PI / 36) } });
-    expect(sceneActionOf(key("E", true), pose, true)).toEqual({ change: { yaw: expect.closeTo(-Math.PI / 2) } });
-    expect(sceneActionOf(key("PageDown"), pose, false)).toEqual({ go: "next" });
-    expect(sceneActionOf({ ...key("ArrowUp"), altKey: true }, pose, false)).toBeNull();
+    expect(sceneActionOf(key("ArrowUp"), part)).toEqual({ change: { pose: { x: expect.closeTo(0.41) } } });
+    expect(sceneActionOf(key("ArrowRight", true), part)).toEqual({ change: { pose: { y: expect.closeTo(0.099) } } });
+    expect(sceneActionOf(key("q"), part)).toEqual({ change: { pose: { yaw: expect.closeTo(Math.PI / 36) } } });
+    expect(sceneActionOf(key("E", true), thing("robot"))).toEqual({ change: { pose: { yaw: expect.closeTo(-Math.PI / 2) } } });
+    expect(sceneActionOf(key("PageDown"), part)).toEqual({ go: "next" });
+    const alt = (name: string, shiftKey = false) => ({ ...key(name, shiftKey), altKey: true });
+    expect(sceneActionOf(alt("ArrowUp"), part)).toEqual({ change: { size: [expect.closeTo(0.055), 0.06, 0.07] } });
+    expect(sceneActionOf(alt("ArrowLeft", true), part)).toEqual({ change: { size: [0.05, expect.closeTo(0.059), 0.07] } });
+    expect(sceneActionOf(alt("ArrowUp"), thing("place"))).toBeNull();
+    expect(sceneActionOf({ ...key("n"), ctrlKey: true }, part)).toBeNull();
+    expect(sceneActionOf(key("n"), part)).toEqual({ does: "add" });
+    expect(sceneActionOf(key("Delete"), part)).toEqual({ does: "remove" });
     expect(wrapped((3 * Math.PI) / 2)).toBeCloseTo(-Math.PI / 2);
   });
 });

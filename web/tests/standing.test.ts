@@ -4,7 +4,7 @@ import type { RobotView } from "../src/wire/types";
 
 function robot(name: string, change: Partial<RobotView> = {}): RobotView {
   const view: RobotView = {
-    robot: name, connected: true, simulated: false, behaviors: [], cameras: [], reach: null, run: null, state: "idle",
+    robot: name, connected: true, simulated: false, behaviors: [], cameras: [], reach: null, model: null, run: null, state: "idle",
   };
   return { ...view, ...change };
 }

@@ -3,7 +3,8 @@ import { problems } from "../scripts/check_words.mjs";
 import sentences from "../texts/de/sentences.json";
 import clauses from "../texts/de/clauses.json";
 import { languageOf } from "../src/words/language";
-import { takeSentences, learn, said, translated } from "../src/words/said";
+import { takeSentences, learn, said, translated, whyNotDone } from "../src/words/said";
+import { Refusal } from "../src/wire/rest";
 import { parts, t, tn } from "../src/words/words";
 
 describe("the language of a page", () => {
@@ -46,6 +47,15 @@ describe("what the service says", () => {
       { key: "Will you put it back on the table?", args: {} },
     ],
   };
+
+  it("is said of what is refused while somebody answers", () => {
+    expect(said("anna is on this dialogue for 12 s more; 'take_over' takes it from them")).toBe(
+      "anna kümmert sich noch 12 s darum; Sie können es übernehmen",
+    );
+    expect(said("this dialogue is closed (aborted)")).toContain("der Roboter hat diese Aufgabe beendet");
+    expect(whyNotDone(new Refusal(409, "this question was already answered by anna"))).toBe("diese Frage hat anna schon beantwortet");
+    expect(whyNotDone(new Error("nobody has put this into German"))).toBe("nobody has put this into German");
+  });
 
   it("is said of what it is made of", () => {
     learn([missed]);

@@ -12,6 +12,7 @@ from mend.server.journal.events.dialogue_events import (
     DialogueOpened,
     Escalated,
     FirstLook,
+    HandedOn,
     HelpAwaited,
     HelpNotSeen,
     HelpNotSeenYet,
@@ -112,6 +113,7 @@ AnyEvent = Annotated[
     | Answered
     | DeadlineExtended
     | Escalated
+    | HandedOn
     | HelpAwaited
     | HelpVerified
     | HelpNotSeen

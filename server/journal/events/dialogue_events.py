@@ -168,6 +168,14 @@ class Escalated(DialogueEvent):
     to: str
 
 
+class HandedOn(DialogueEvent):
+    """`helper`, who was asked, is busy with another question: it goes to `to`, who is idle."""
+
+    type: Literal["handed_on"] = "handed_on"
+    helper: str
+    to: str
+
+
 class HelpAwaited(DialogueEvent):
     """A helper promised physical help; the robot watches for it until `until` (run's clock).
 

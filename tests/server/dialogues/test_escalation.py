@@ -1,12 +1,14 @@
-"""An unanswered ask climbs a ladder that ends."""
+"""Who is idle is asked first, and an unanswered ask climbs a ladder that ends."""
 
 from collections.abc import Sequence
+from uuid import UUID
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from mend.server.dialogues.duty import Duty, WaitingQuestion
 from mend.server.dialogues.escalation import (
     EscalationPolicy,
     Exhausted,
@@ -16,17 +18,18 @@ from mend.server.dialogues.escalation import (
     Standing,
     ToHelper,
     first_helper,
+    handed_on,
     next_rung,
 )
 
 
-def rungs(policy: EscalationPolicy, idle: Sequence[str] = ()) -> list[Rung]:
-    """Every rung, up to and with the one that says that nobody is left."""
+def rungs(policy: EscalationPolicy, there: Sequence[str] = ()) -> list[Rung]:
+    """Every rung, up to and with the one that says that nobody is left; nobody has other work."""
     climbed: list[Rung] = []
     asked: list[str | None] = [first_helper(policy)]
     while not climbed or climbed[-1] != Exhausted():
         mailed = any(isinstance(each, Mail) for each in climbed)
-        rung = next_rung(policy, Standing(tuple(asked), mailed), idle)
+        rung = next_rung(policy, Standing(tuple(asked), mailed), Duty(there))
         climbed.append(rung)
         asked.append(rung.helper if isinstance(rung, Repeat | ToHelper) else asked[-1])
     return climbed
@@ -66,7 +69,7 @@ def test_before_it_is_mailed_it_goes_to_whoever_is_signed_in_and_was_not_asked_l
     policy = EscalationPolicy(
         helpers=("ana", "ben"), repeats=1, operators=("ops@example.org",), answer_within_s=30.0
     )
-    assert rungs(policy, idle=["dan", "ben", "ana"]) == [
+    assert rungs(policy, there=["dan", "ben", "ana"]) == [
         Repeat("ana", 30.0),
         ToHelper("ben", 30.0),
         ToHelper("dan", 30.0),
@@ -80,19 +83,102 @@ def test_who_signs_in_after_the_operators_were_written_to_is_called_all_the_same
     policy = EscalationPolicy(helpers=("ana",), repeats=0, operators=("ops@example.org",))
     standing = Standing(("ana", "ana"), mailed=True)
     assert next_rung(policy, standing) == Exhausted()
-    assert next_rung(policy, standing, ["dan"]) == ToHelper("dan", 60.0)
+    assert next_rung(policy, standing, Duty(["dan"])) == ToHelper("dan", 60.0)
 
 
 def test_where_everybody_is_asked_nobody_is_called_once_more() -> None:
-    assert rungs(EscalationPolicy(), idle=["dan"]) == [Repeat(None, 60.0), Exhausted()]
+    assert rungs(EscalationPolicy(), there=["dan"]) == [Repeat(None, 60.0), Exhausted()]
 
 
 def test_what_a_robot_does_not_wait_for_is_asked_of_somebody_who_is_there() -> None:
     policy = EscalationPolicy(helpers=("ana", "ben"))
-    assert first_helper(policy, ["dan", "ben"], waits=False) == "ben"
-    assert first_helper(policy, ["dan"], waits=False) == "dan"
-    assert first_helper(policy, [], waits=False) == "ana"
-    assert first_helper(policy, ["dan"]) == "ana"
+    assert first_helper(policy, Duty(["dan", "ben"]), waits=False) == "ben"
+    assert first_helper(policy, Duty(["dan"]), waits=False) == "dan"
+    assert first_helper(policy, Duty(), waits=False) == "ana"
+    assert first_helper(policy, Duty(["dan"])) == "ana"
+    busy = Duty(["dan"], questions=[WaitingQuestion(UUID(int=1), ["dan"])])
+    assert first_helper(policy, busy, waits=False) == "dan"
+    assert first_helper(policy, Duty(["dan"], on=[(UUID(int=1), "dan")]), waits=False) == "ana"
+
+
+def put(number: int, *asked: str | None, may_go_on: bool = True) -> WaitingQuestion:
+    return WaitingQuestion(UUID(int=number), asked, may_go_on)
+
+
+TWO = EscalationPolicy(helpers=("ana", "ben"), repeats=1)
+
+
+def test_who_is_idle_is_asked_before_who_is_busy() -> None:
+    on = [(UUID(int=7), "ana")]
+    assert first_helper(TWO, Duty(["ana", "ben"], on)) == "ben"
+    assert first_helper(TWO, Duty(["ana", "dan"], on)) == "dan"
+    assert first_helper(TWO, Duty(["ana"], on)) == "ben"
+    assert first_helper(TWO, Duty(["ana", "ben"], questions=[put(1, "ana")])) == "ben"
+    both = Duty(["ana", "ben"], on, [put(1, "ana"), put(2, "ben")])
+    assert first_helper(TWO, both) == "ben"
+
+
+def test_nobody_busy_is_asked_again_or_next_beside_somebody_idle() -> None:
+    three = EscalationPolicy(helpers=("ana", "ben", "cem"), repeats=1)
+    standing, on = Standing(("ana",)), [(UUID(int=7), "ana"), (UUID(int=8), "ben")]
+    assert next_rung(three, standing, Duty(["ana", "cem"], on), UUID(int=1)) == ToHelper(
+        "cem", 60.0
+    )
+    assert next_rung(three, standing, Duty(["ana"], on), UUID(int=1)) == Repeat("ana", 60.0)
+    # What is asked of her itself is nothing that she has to do before.
+    first = Duty(["ana", "cem"], questions=[put(1, "ana")])
+    assert next_rung(three, standing, first, UUID(int=1)) == Repeat("ana", 60.0)
+    again = Standing(("ana", "ana"))
+    assert next_rung(three, again, Duty(["cem"], on)) == ToHelper("cem", 60.0)
+    assert next_rung(three, again, Duty([], on)) == ToHelper("cem", 60.0)
+
+
+def test_a_question_goes_on_from_who_is_busy_to_who_is_idle_the_first_one_first() -> None:
+    questions = [put(1, "ana"), put(2, "ana"), put(3, "ana")]
+    assert handed_on(TWO, Duty(["ana", "ben"], questions=questions)) == {UUID(int=2): "ben"}
+    on = [(UUID(int=7), "ana")]
+    both = Duty(["dan", "ana", "ben"], on, questions)
+    assert handed_on(TWO, both) == {UUID(int=1): "ben", UUID(int=2): "dan"}
+    assert handed_on(TWO, Duty(["ana"], on, questions)) == {}
+    assert handed_on(EscalationPolicy(), Duty(["ben"], on, [put(1, None)])) == {}
+
+
+def test_no_question_goes_on_that_somebody_is_at_or_to_who_was_asked_it() -> None:
+    on, there = [(UUID(int=7), "ana")], ["ben"]
+    assert handed_on(TWO, Duty(there, on, [put(1, "ana", may_go_on=False)])) == {}
+    assert handed_on(TWO, Duty(there, on, [put(1, "ben", "ana")])) == {}
+
+
+@given(
+    there=st.lists(st.sampled_from("abcdef"), unique=True),
+    on=st.lists(
+        st.tuples(st.integers(100, 105).map(lambda n: UUID(int=n)), st.sampled_from("abcdef"))
+    ),
+    asked=st.lists(st.lists(st.sampled_from("abcdefg"), min_size=1, max_size=4), max_size=8),
+    helpers=st.lists(st.sampled_from("abcdefg"), unique=True, min_size=1),
+)
+def test_no_question_waits_for_who_is_busy_while_somebody_is_idle(
+    there: list[str], on: list[tuple[UUID, str]], asked: list[list[str]], helpers: list[str]
+) -> None:
+    policy = EscalationPolicy(helpers=tuple(helpers))
+    questions = [put(number, *each) for number, each in enumerate(asked)]
+    moves = 0
+    while found := handed_on(policy, duty := Duty(there, on, questions)):
+        # Whichever run is first.
+        dialogue, to = next(iter(found.items()))
+        assert to in duty.idle
+        (moved,) = [each for each in questions if each.dialogue == dialogue]
+        assert duty.before(str(moved.helper), dialogue) > 0
+        questions.remove(moved)
+        questions.append(put(dialogue.int, *moved.asked, to))
+        moves += 1
+    assert moves <= len(asked) * len(there)
+    for each in duty.questions:
+        if duty.before(str(each.helper), each.dialogue):
+            assert set(duty.idle) <= set(each.asked)
+    new = first_helper(policy, duty)
+    assert new is not None
+    assert not (duty.idle and duty.before(new))
 
 
 @given(

@@ -123,6 +123,7 @@ def every_event() -> list[ev.Event]:
         ev.Claimed(**talk(), helper="anna", lease_until=datetime(2026, 1, 2, 3, 5, tzinfo=UTC)),
         ev.Released(**talk(), helper="anna", expired=True),
         ev.Escalated(**talk(), channel="mail", to="operators@example.com"),
+        ev.HandedOn(**talk(), helper="anna", to="ben"),
         ev.DeadlineExtended(
             **talk(),
             prompt=PROMPT,

@@ -64,9 +64,11 @@ async def test_each_question_says_whom_the_robot_asks_next() -> None:
 
 
 def test_somebody_with_two_devices_is_there_until_both_are_gone() -> None:
-    attendance = Attendance()
-    with attendance.attending("ann"):
+    attendance, heard = Attendance(), list[list[str]]()
+    attendance.changed = lambda: heard.append(attendance.there)
+    with attendance.attending("ann"), attendance.attending("ben"):
         with attendance.attending("ann"):
-            assert attendance.idle([]) == ["ann"]
-        assert attendance.idle([]) == ["ann"]
-    assert attendance.idle([]) == []
+            pass
+        assert attendance.there == ["ann", "ben"]
+    assert attendance.there == []
+    assert heard[-3:] == [["ann", "ben"], ["ann"], []]

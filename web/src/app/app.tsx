@@ -23,6 +23,7 @@ const TreesView = later(() => import("../trees/trees_view").then((module) => mod
 const TreeEditor = later(() => import("../trees/tree_editor").then((module) => module.TreeEditor));
 const ScenesView = later(() => import("../scenes/scenes_view").then((module) => module.ScenesView));
 const SceneEditor = later(() => import("../scenes/scene_editor").then((module) => module.SceneEditor));
+const ModelsView = later(() => import("../models/models_view").then((module) => module.ModelsView));
 const StartRun = later(() => import("../run/start/start_run").then((module) => module.StartRun));
 const RequestsView = later(() => import("../requests/requests_view").then((module) => module.RequestsView));
 const FleetPage = later(() => import("../fleet/fleet_page").then((module) => module.FleetPage));
@@ -87,6 +88,8 @@ function View({ shown }: { shown: Exclude<Route, { view: "touch" }> }) {
       return <ScenesView />;
     case "edit_scene":
       return <SceneEditor key={shown.scene} scene={shown.scene} />;
+    case "models":
+      return <ModelsView />;
     case "start":
       return <StartRun key={shown.tree} tree={shown.tree} />;
     case "requests":

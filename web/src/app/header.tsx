@@ -22,8 +22,8 @@ export function Connection() {
   );
 }
 
-/** Task trees, and the scenes that they are for. */
-const TREE_VIEWS: ReadonlySet<string> = new Set(["trees", "tree", "edit", "scenes", "edit_scene"]);
+/** Task trees, the scenes that they are for, and how their robots are drawn. */
+const TREE_VIEWS: ReadonlySet<string> = new Set(["trees", "tree", "edit", "scenes", "edit_scene", "models"]);
 
 export function Header() {
   const view = route.value.view;

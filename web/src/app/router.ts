@@ -12,6 +12,7 @@ export type Route =
   | { view: "edit"; tree: string | null }
   | { view: "scenes" }
   | { view: "edit_scene"; scene: string | null }
+  | { view: "models" }
   | { view: "start"; tree: string | null }
   | { view: "requests" }
   | { view: "touch"; robot: string }
@@ -19,9 +20,9 @@ export type Route =
   | { view: "settings" }
   | { view: "unknown"; path: string };
 
-type Page = "runs" | "issues" | "statistics" | "trees" | "scenes" | "requests" | "settings";
+type Page = "runs" | "issues" | "statistics" | "trees" | "scenes" | "models" | "requests" | "settings";
 
-const PAGES: ReadonlySet<Page> = new Set<Page>(["runs", "issues", "statistics", "trees", "scenes", "requests", "settings"]);
+const PAGES: ReadonlySet<Page> = new Set<Page>(["runs", "issues", "statistics", "trees", "scenes", "models", "requests", "settings"]);
 
 const path = signal(location.pathname);
 

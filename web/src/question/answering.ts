@@ -8,7 +8,7 @@ import { helperName } from "../state/preferences";
 import { command } from "../state/service";
 import { answerWhileLeaving, Refusal } from "../wire/rest";
 import { t } from "../words/words";
-import { said } from "../words/said";
+import { said, whyNotDone } from "../words/said";
 
 export type Answer = "yes" | "no";
 
@@ -103,7 +103,7 @@ async function send({ question, prompt, reply, said: words }: Held): Promise<voi
     given.value = new Set([...given.value].filter((each) => each !== prompt));
     const faster = error instanceof Refusal ? error.answeredBy : null;
     if (faster === null) {
-      note(prompt, t("Your {reply} was not sent: {message}", { reply: words, message: said((error as Error).message) }));
+      note(prompt, t("Your {reply} was not sent: {message}", { reply: words, message: whyNotDone(error) }));
     } else if (faster === helperName.value) {
       note(prompt, t("Your {reply} does not count: you have answered this already.", { reply: words }));
     } else {

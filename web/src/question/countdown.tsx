@@ -6,6 +6,7 @@ import { runs } from "../state/service";
 import { command } from "../state/service";
 import { runTime } from "../state/run_clock";
 import { t } from "../words/words";
+import { whyNotDone } from "../words/said";
 import "./countdown.css";
 
 /** The warning comes this long before the end, so that there is time to ask for more. */
@@ -34,7 +35,7 @@ export function MoreTime({ question }: { question: Question }) {
   const more = () => {
     setMistake("");
     command({ type: "extend", dialogue: question.dialogue, prompt: prompt.prompt }).catch((error: Error) =>
-      setMistake(error.message),
+      setMistake(whyNotDone(error)),
     );
   };
   return (

@@ -5,7 +5,7 @@ import * as rest from "../wire/rest";
 import type { BatchWayView } from "../wire/types";
 import { UNDO_MS } from "./answering";
 import { t } from "../words/words";
-import { said } from "../words/said";
+import { said, whyNotDone } from "../words/said";
 
 export function ForAll({ ways, prompts }: { ways: readonly BatchWayView[]; prompts: readonly string[] }) {
   const [chosen, setChosen] = useState<BatchWayView | null>(null);
@@ -17,8 +17,8 @@ export function ForAll({ ways, prompts }: { ways: readonly BatchWayView[]; promp
     const timer = window.setTimeout(() => {
       setChosen(null);
       rest.chooseForAll(chosen.way, all.split(" "), helperName.value).then(
-        (became) => setMistake(became.map(({ refused }) => refused ?? "").filter((each) => each !== "").join(" ")),
-        (error: Error) => setMistake(error.message),
+        (became) => setMistake(became.map(({ refused }) => said(refused ?? "")).filter((each) => each !== "").join(" ")),
+        (error: Error) => setMistake(whyNotDone(error)),
       );
     }, UNDO_MS);
     return () => window.clearTimeout(timer);

@@ -5,7 +5,7 @@ import { helperName } from "../state/preferences";
 import type { Question } from "../state/questions";
 import { command, connection } from "../state/service";
 import { t } from "../words/words";
-import { said } from "../words/said";
+import { whyNotDone } from "../words/said";
 
 export type Word = "done" | "take_back";
 
@@ -34,7 +34,7 @@ export function say(question: Question, word: Word): boolean {
   note(dialogue, null);
   onItsWay.value = { dialogue, word };
   void command({ type: word, dialogue })
-    .catch((error: Error) => note(dialogue, t("That was not taken: {message}", { message: said(error.message) })))
+    .catch((error: Error) => note(dialogue, t("That was not taken: {message}", { message: whyNotDone(error) })))
     .finally(() => {
       onItsWay.value = null;
     });

@@ -1,8 +1,10 @@
 // What keys do at a thing in the top view of a scene.
-import type { Pose } from "./scene_source";
+import type { Thing } from "./scene_source";
+import { resizedBy, type ThingChange } from "./thing_change";
 
 const STEP_M = 0.01;
 const SMALL_STEP_M = 0.001;
+const GROWS_M = 0.005;
 const TURN_RAD = (5 * Math.PI) / 180;
 const SMALL_TURN_RAD = Math.PI / 180;
 
@@ -21,21 +23,31 @@ const GOES: Readonly<Record<string, "next" | "previous" | "first" | "last">> = {
   End: "last",
 };
 
-export type SceneAction = { change: Partial<Pose> } | { go: "next" | "previous" | "first" | "last" };
+export type SceneAction = { change: ThingChange } | { go: "next" | "previous" | "first" | "last" } | { does: "add" | "remove" };
 
 type Pressed = Pick<KeyboardEvent, "key" | "shiftKey" | "altKey" | "ctrlKey" | "metaKey">;
 
-/** With Shift steps are small. A robot's base turns by quarters. Null for keys that mean nothing here. */
-export function sceneActionOf(event: Pressed, pose: Pose, robot: boolean): SceneAction | null {
-  if (event.altKey || event.ctrlKey || event.metaKey) return null;
+/** With Shift steps are small, with Alt a part grows. A robot's base turns by quarters. Null for keys that mean nothing here. */
+export function sceneActionOf(event: Pressed, thing: Thing): SceneAction | null {
+  if (event.ctrlKey || event.metaKey) return null;
   const way = WAYS[event.key];
+  if (event.altKey) return way === undefined || thing.kind !== "object" ? null : { change: grown(thing, way, event.shiftKey) };
+  const { pose } = thing;
   const step = event.shiftKey ? SMALL_STEP_M : STEP_M;
-  if (way !== undefined) return { change: way[0] !== 0 ? { x: pose.x + way[0] * step } : { y: pose.y + way[1] * step } };
+  if (way !== undefined) return { change: { pose: way[0] !== 0 ? { x: pose.x + way[0] * step } : { y: pose.y + way[1] * step } } };
   const turn = TURNS[event.key.toLowerCase()];
   if (turn !== undefined) {
-    const by = robot ? Math.PI / 2 : event.shiftKey ? SMALL_TURN_RAD : TURN_RAD;
-    return { change: { yaw: pose.yaw + turn * by } };
+    const by = thing.kind === "robot" ? Math.PI / 2 : event.shiftKey ? SMALL_TURN_RAD : TURN_RAD;
+    return { change: { pose: { yaw: pose.yaw + turn * by } } };
   }
+  if (event.key === "Delete") return { does: "remove" };
+  if (event.key.toLowerCase() === "n") return { does: "add" };
   const go = GOES[event.key];
   return go === undefined ? null : { go };
+}
+
+/** Up is deeper, down less; right is wider, left less. */
+function grown(thing: Thing, [deeper, left]: readonly [number, number], small: boolean): ThingChange {
+  const by = small ? SMALL_STEP_M : GROWS_M;
+  return resizedBy(thing, deeper * by, -left * by);
 }

@@ -23,6 +23,8 @@ export interface Thing {
   size: readonly number[] | null;
   /** Linear red, green and blue. */
   color: readonly number[] | null;
+  /** The keys to what the file says of it, and of others like it; null where it says nothing. */
+  owner: Owner | null;
   /** The keys to its pose in the file; null where the file says nothing of it. */
   where: readonly (string | number)[] | null;
   /** Where it stands in the text. */
@@ -32,6 +34,8 @@ export interface Thing {
   /** How many move with it: those of one grid. */
   together: number;
 }
+
+export type Owner = readonly [section: string, name: string];
 
 export type Span = readonly [number, number];
 
@@ -74,6 +78,7 @@ const ALONE: Thing = {
   pose: { x: 0, y: 0, z: null, yaw: 0 },
   size: null,
   color: null,
+  owner: null,
   where: null,
   span: null,
   entry: null,
@@ -98,7 +103,8 @@ function tableOf(value: unknown): Table {
   };
 }
 
-const SECTIONS: Readonly<Record<ThingKind, string>> = { object: "objects", place: "places", robot: "robots" };
+/** Where in the file things of each kind are. */
+export const SECTIONS: Readonly<Record<ThingKind, string>> = { object: "objects", place: "places", robot: "robots" };
 
 function entriesOf(source: YamlSource, kind: ThingKind, entries: unknown): Thing[] {
   const section = SECTIONS[kind];
@@ -108,12 +114,13 @@ function entriesOf(source: YamlSource, kind: ThingKind, entries: unknown): Thing
     const pair = pairOf(map, name);
     if (!isRecord(entry) || pair === null) return [];
     const span: Span = [startOf(pair.key), endOf(source, pair)];
-    const made = { kind, size: numbersOf(entry.size, 3), color: numbersOf(entry.color, 3), entry: span };
+    const owner = [section, name] as const;
+    const made = { kind, owner, size: numbersOf(entry.size, 3), color: numbersOf(entry.color, 3), entry: span };
     return standingsOf(source, kind, name, entry, span, [section, name]).map((each) => ({ ...made, ...each }));
   });
 }
 
-type Standing = Omit<Thing, "kind" | "size" | "color" | "entry">;
+type Standing = Omit<Thing, "kind" | "owner" | "size" | "color" | "entry">;
 
 /** Where an entry stands: once, several times, or in rows and columns. */
 function standingsOf(

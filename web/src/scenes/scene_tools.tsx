@@ -10,9 +10,10 @@ interface SceneToolsProps {
   worlds: readonly WorldFit[];
   shown: WorldFit | undefined;
   onWorld: (world: string) => void;
+  onAdd: (kind: "object" | "place") => void;
 }
 
-export function SceneTools({ text, worlds, shown, onWorld }: SceneToolsProps) {
+export function SceneTools({ text, worlds, shown, onWorld, onAdd }: SceneToolsProps) {
   return (
     <div class="tree-tools" role="group" aria-label={t("Change the scene")}>
       <div class="tool-group">
@@ -21,6 +22,14 @@ export function SceneTools({ text, worlds, shown, onWorld }: SceneToolsProps) {
         </button>
         <button type="button" class="tool" disabled={!text.canRedo} onClick={text.redo}>
           {t("Redo")}
+        </button>
+      </div>
+      <div class="tool-group">
+        <button type="button" class="tool" onClick={() => onAdd("object")}>
+          {t("Add a part")}
+        </button>
+        <button type="button" class="tool" onClick={() => onAdd("place")}>
+          {t("Add a place")}
         </button>
       </div>
       {shown !== undefined && (

@@ -1,6 +1,8 @@
 // The selected thing of a scene in numbers, to be changed.
 import { plain } from "../tree/words";
+import { linearColor, screenColor } from "./colors";
 import type { Pose, Thing } from "./scene_source";
+import { SizeFields } from "./size_fields";
 import { keyOf, type ThingProblem } from "./thing_problems";
 import { t } from "../words/words";
 
@@ -12,6 +14,9 @@ interface ThingFormProps {
   problems: readonly ThingProblem[];
   onSelect: (key: string) => void;
   onMove: (change: Partial<Pose>) => void;
+  onSize: (size: readonly number[]) => void;
+  onColor: (color: readonly number[]) => void;
+  onRemove: () => void;
   onShow: () => void;
 }
 
@@ -23,7 +28,7 @@ const GROUPS: readonly (readonly [Thing["kind"], string])[] = [
 const DEGREES = 180 / Math.PI;
 
 export function ThingForm(props: ThingFormProps) {
-  const { things, thing, problems, onSelect, onShow } = props;
+  const { things, thing, problems, onSelect, onShow, onRemove } = props;
   return (
     <form class="node-form" aria-label={t("The selected thing")} onSubmit={(event) => event.preventDefault()}>
       <div class="node-form-head">
@@ -44,9 +49,14 @@ export function ThingForm(props: ThingFormProps) {
           </select>
         </div>
         {thing.span !== null && (
-          <button type="button" class="tool" onClick={onShow}>
-            {t("Show in the text")}
-          </button>
+          <div class="tool-group">
+            <button type="button" class="tool" onClick={onShow}>
+              {t("Show in the text")}
+            </button>
+            <button type="button" class="tool" aria-label={t("Take out {name}", { name: plain(thing.name) })} onClick={onRemove}>
+              {t("Take out")}
+            </button>
+          </div>
         )}
       </div>
       {problems.map(({ message, mistake }) => (
@@ -57,7 +67,10 @@ export function ThingForm(props: ThingFormProps) {
       {thing.where === null ? (
         <p class="small quiet">{t("The file names no robot, so one stands in the middle. To move it, add it to 'robots' in the text.")}</p>
       ) : (
-        <Numbers {...props} />
+        <>
+          <Numbers {...props} />
+          {thing.kind === "object" && <Looks {...props} />}
+        </>
       )}
     </form>
   );
@@ -72,7 +85,7 @@ function Numbers({ thing, tableHeight, onMove }: ThingFormProps) {
   const bottom = kind === "robot" ? 0 : tableHeight;
   return (
     <>
-      {together > 1 && <p class="small quiet">{t("It is one of {together} in a grid, which move and turn together.", { together })}</p>}
+      {together > 1 && <p class="small quiet">{t("It is one of {together} in a grid, which move, turn and go together.", { together })}</p>}
       <div class="node-fields">
         <div class="field">
           <label for="thing-x">{t("Forward x (m)")}</label>
@@ -102,6 +115,23 @@ function Numbers({ thing, tableHeight, onMove }: ThingFormProps) {
             value={shown(pose.yaw * DEGREES)}
             onChange={(event) => enter(event, (degrees) => ({ yaw: degrees / DEGREES }))}
           />
+        </div>
+      </div>
+    </>
+  );
+}
+
+function Looks({ thing, things, onSize, onColor }: ThingFormProps) {
+  const { owner, size, color } = thing;
+  const equal = things.filter((each) => each.owner?.join("/") === owner?.join("/")).length;
+  return (
+    <>
+      {equal > 1 && <p class="small quiet">{t("Its size and colour are those of all {equal} that are equal.", { equal })}</p>}
+      <div class="node-fields">
+        {size !== null && <SizeFields id="thing" size={size} onSize={onSize} />}
+        <div class="field">
+          <label for="thing-color">{t("Colour")}</label>
+          <input id="thing-color" type="color" value={screenColor(color)} onChange={(event) => onColor(linearColor(event.currentTarget.value))} />
         </div>
       </div>
     </>

@@ -1,5 +1,5 @@
 // From a scene's plane to a drawing seen from above: x forward is up, y left is left.
-import type { Pose, SceneSource, Thing } from "./scene_source";
+import type { Pose, SceneSource } from "./scene_source";
 
 export interface ViewFrame {
   /** Pixels a metre. */
@@ -43,13 +43,4 @@ function edges(center = 0, size = 0): [number, number] {
 /** How a drawing of something that points up is put where a pose says. */
 export function placed(frame: ViewFrame, { x, y, yaw }: Pose): string {
   return `translate(${frame.left(y)} ${frame.top(x)}) rotate(${(-yaw * 180) / Math.PI})`;
-}
-
-/** Linear red, green and blue as the screen has it. */
-export function screenColor(color: Thing["color"]): string {
-  const channels = (color ?? [0.5, 0.5, 0.5]).map((each) => {
-    const linear = Math.min(Math.max(each, 0), 1);
-    return Math.round(255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055));
-  });
-  return `rgb(${channels.join(" ")})`;
 }

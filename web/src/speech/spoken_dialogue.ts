@@ -16,6 +16,7 @@ import { connectSpeech, type SpeechSocket } from "./speech_socket";
 import { lastHeard, listensTo, speechLacks, speechPhase } from "./speech_state";
 import { hush, say } from "./voice";
 import { t } from "../words/words";
+import { whyNotDone } from "../words/said";
 import { browserVoices } from "./browser_voice";
 import { language, nameOf } from "../words/language";
 
@@ -62,7 +63,7 @@ async function abilitiesAndMicrophone(): Promise<[Abilities, string | null, Open
         ...(recognition.available ? [] : [t("It cannot listen ({why_not}): please use the buttons.", { why_not: recognition.why_not ?? "" })]),
       ],
     }),
-    (error: Error) => ({ listensTo: null, recognition: false, lacks: [error.message] }),
+    (error: Error) => ({ listensTo: null, recognition: false, lacks: [whyNotDone(error)] }),
   );
   if (!abilities.recognition) return [abilities, null, null];
   const held = { onFrame: (_: ArrayBuffer) => undefined as void };
@@ -228,7 +229,7 @@ class SpokenDialogue {
     if (command === "stop") {
       rest.pauseRun(question.run).then(
         () => tellEnding(question, t("You said stop: the run is paused.")),
-        (error: Error) => tellEnding(question, t("You said stop, but: {message}", { message: error.message })),
+        (error: Error) => tellEnding(question, t("You said stop, but: {message}", { message: whyNotDone(error) })),
       );
     }
   }

@@ -4,7 +4,7 @@ import { may } from "../state/access";
 import { connection } from "../state/service";
 import * as rest from "../wire/rest";
 import type { DocumentSummary } from "../wire/types";
-import { DropZone, FileButton } from "./drop_zone";
+import { DropZone, FileButton } from "../document/drop_zone";
 import { TreeDetails } from "./tree_details";
 import { takeFile } from "./upload";
 import { t } from "../words/words";
@@ -23,7 +23,7 @@ export function TreesView({ tree }: { tree: string | null }) {
   };
   const chosen = tree ?? trees?.[0]?.name ?? null;
   return (
-    <DropZone onFile={take} onSeveral={() => setMistake(t("One task file at a time, please."))}>
+    <DropZone onFile={take} onSeveral={() => setMistake(t("One task file at a time, please."))} here={t("Drop the task file here")}>
       <section class="page">
         <div class="page-head">
           <h1>{t("Task trees")}</h1>
@@ -31,9 +31,14 @@ export function TreesView({ tree }: { tree: string | null }) {
             <a class="button" href="/scenes">
               {t("Scenes")}
             </a>
+            <a class="button" href="/models">
+              {t("Robot models")}
+            </a>
             {may("operator") && (
               <>
-                <FileButton onFile={take} />
+                <FileButton onFile={take} accept=".yaml,.yml,.json">
+                  {t("Upload a file")}
+                </FileButton>
                 <a class="button" href="/edit">
                   {t("Write a new one")}
                 </a>

@@ -79,7 +79,7 @@ export function onSignedOut(listener: () => void): void {
   whenRefused = listener;
 }
 
-async function call<T>(
+export async function call<T>(
   method: string,
   path: string,
   body?: unknown,
@@ -88,7 +88,7 @@ async function call<T>(
   const init: RequestInit = signal === undefined ? { method } : { method, signal };
   if (body !== undefined) {
     init.headers = { "Content-Type": type };
-    init.body = type === JSON_TYPE ? JSON.stringify(body) : String(body);
+    init.body = type === JSON_TYPE ? JSON.stringify(body) : (body as BodyInit);
   }
   const response = await fetch(path, init).catch(() => {
     signal?.throwIfAborted();
@@ -114,7 +114,7 @@ async function refusal(response: Response): Promise<Refusal> {
   return new Refusal(response.status, detail, errors ?? [], answered_by ?? null, next_possible_s ?? null, why ?? null);
 }
 
-const segment = encodeURIComponent;
+export const segment = encodeURIComponent;
 
 export const session = () => call<SessionView>("GET", SESSION);
 export const signIn = (token: string) => call<void>("POST", SESSION, { token });

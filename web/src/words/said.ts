@@ -42,6 +42,11 @@ export function said(text: string): string {
   return translated(text) ?? text;
 }
 
+/** Why something could not be done, in the reader's language where it is in that. */
+export function whyNotDone(error: unknown): string {
+  return said((error as Error).message);
+}
+
 /** A text put together of sentences; null where one of them is only there in English. */
 function all(sentences: readonly WordedSentence[]): string | null {
   const found: string[] = [];

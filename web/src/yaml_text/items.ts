@@ -36,16 +36,23 @@ export function itemLines({ text, ...source }: YamlSource, list: YAMLSeq, index:
   const dash = starts?.find(({ type }) => type === "seq-item-ind");
   if (dash === undefined) throw new CannotEdit(t("This item of a list cannot be found in the text."));
   const column = columnOf(text, dash.offset);
-  let from = lineStart(text, dash.offset);
+  const from = withCommentsAbove(text, dash.offset);
+  const item = list.items[index];
+  const content = item === null ? dash.offset + 1 : Math.max(dash.offset + 1, endOf({ text, ...source }, item));
+  return { from, to: commentsBelow(text, lineEnd(text, content), column), column };
+}
+
+/** Where the line of an offset begins, or the comments right above it in the same column. */
+export function withCommentsAbove(text: string, offset: number): number {
+  const column = columnOf(text, offset);
+  let from = lineStart(text, offset);
   while (from > 0) {
     const above = lineStart(text, from - 1);
     const line = text.slice(above, from);
     if (!COMMENT.test(line) || line.indexOf("#") !== column) break;
     from = above;
   }
-  const item = list.items[index];
-  const content = item === null ? dash.offset + 1 : Math.max(dash.offset + 1, endOf({ text, ...source }, item));
-  return { from, to: commentsBelow(text, lineEnd(text, content), column), column };
+  return from;
 }
 
 /** The end of the comments from an offset on that stand farther right than a column. */

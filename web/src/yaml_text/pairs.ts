@@ -1,8 +1,8 @@
 // Setting, adding and removing keys of mappings in a YAML text.
 import { isCollection, isScalar, type Pair, type YAMLMap } from "yaml";
-import { linesAt } from "./items";
+import { commentsBelow, linesAt, withCommentsAbove } from "./items";
 import { CannotEdit, endOf, isJson, keyEnd, pairOf, startOf, type YamlSource } from "./source";
-import { columnOf, lineEnd, lineStart, type Splice } from "./splice";
+import { beginsLine, columnOf, lineEnd, lineStart, type Splice } from "./splice";
 import { inLine } from "./values";
 import { t } from "../words/words";
 
@@ -25,7 +25,7 @@ function changed(source: YamlSource, pair: Pair, written: string): Splice {
 
 function added(source: YamlSource, map: YAMLMap, key: string, written: string, first: boolean): Splice {
   const { text } = source;
-  const said = `${isJson(source, map) ? JSON.stringify(key) : key}: ${written}`;
+  const said = `${inLine(key, isJson(source, map))}: ${written}`;
   const [begin, last] = [map.items[0], map.items.at(-1)];
   if (begin === undefined || last === undefined) {
     const at = endOf(source, map) - 1;
@@ -47,6 +47,23 @@ export function pairRemoved(source: YamlSource, map: YAMLMap, key: string): Spli
   const [from, to] = [startOf(pair.key), endOf(source, pair)];
   if (map.items.length === 1) throw new CannotEdit(t("Nothing would be left without '{key}'.", { key }));
   return map.flow === true ? removedInBraces(source, map, index, from, to) : removedLines(source, map, index, from, to);
+}
+
+/** Where a key of a mapping in lines stands, with the comments above it in its column, and those under it. */
+export function pairLines(source: YamlSource, map: YAMLMap, key: string): { from: number; to: number } {
+  const { text } = source;
+  const pair = pairOf(map, key);
+  if (pair === null) throw new CannotEdit(t("This part of the text cannot be found."));
+  const [start, end] = [startOf(pair.key), endOf(source, pair)];
+  if (map.flow === true || !beginsLine(text, start)) return { from: start, to: end };
+  return { from: withCommentsAbove(text, start), to: commentsBelow(text, lineEnd(text, end), columnOf(text, start)) };
+}
+
+/** Say nothing of a key any more, nor in the comments that are its own. */
+export function pairTakenOut(source: YamlSource, map: YAMLMap, key: string): Splice[] {
+  const pair = pairOf(map, key);
+  if (map.flow === true || pair === null || !beginsLine(source.text, startOf(pair.key))) return pairRemoved(source, map, key);
+  return [{ ...pairLines(source, map, key), insert: "" }];
 }
 
 function removedInBraces(source: YamlSource, map: YAMLMap, index: number, from: number, to: number): Splice[] {

@@ -1,19 +1,24 @@
-// Where a task file is let in: dropped anywhere on the library, or chosen with a button.
+// Where a file is let in: dropped anywhere on a page, or chosen with a button.
 import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
-import { t } from "../words/words";
+import "./drop_zone.css";
+
+/** What browsers call what is dragged. */
+const FILES = "Files";
 
 interface DropZoneProps {
   onFile: (file: File) => void;
   onSeveral: () => void;
+  /** What stands on the page while a file is above it. */
+  here: string;
   children: ComponentChildren;
 }
 
-export function DropZone({ onFile, onSeveral, children }: DropZoneProps) {
+export function DropZone({ onFile, onSeveral, here, children }: DropZoneProps) {
   // Entering a child comes before leaving its parent, so they are counted.
   const [depth, setDepth] = useState(0);
   const enter = (event: DragEvent) => {
-    if (!event.dataTransfer?.types.includes(t("Files"))) return;
+    if (!event.dataTransfer?.types.includes(FILES)) return;
     event.preventDefault();
     setDepth((before) => before + 1);
   };
@@ -33,13 +38,20 @@ export function DropZone({ onFile, onSeveral, children }: DropZoneProps) {
       onDrop={drop}
     >
       {children}
-      {depth > 0 && <p class="drop-here">{t("Drop the task file here")}</p>}
+      {depth > 0 && <p class="drop-here">{here}</p>}
     </div>
   );
 }
 
+interface FileButtonProps {
+  onFile: (file: File) => void;
+  /** Which files are offered, as `accept` of an input has them. */
+  accept: string;
+  children: ComponentChildren;
+}
+
 /** The same for those who do not drag. */
-export function FileButton({ onFile }: { onFile: (file: File) => void }) {
+export function FileButton({ onFile, accept, children }: FileButtonProps) {
   const choose = (event: Event) => {
     const input = event.currentTarget as HTMLInputElement;
     const file = input.files?.[0];
@@ -49,8 +61,8 @@ export function FileButton({ onFile }: { onFile: (file: File) => void }) {
   };
   return (
     <label class="button file-button">
-      {t("Upload a file")}
-      <input class="unseen" type="file" accept=".yaml,.yml,.json" onChange={choose} />
+      {children}
+      <input class="unseen" type="file" accept={accept} onChange={choose} />
     </label>
   );
 }
