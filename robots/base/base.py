@@ -239,13 +239,17 @@ class Base(Effector[BaseBody]):
     def round_takes_s(self, to: BasePose) -> float:
         """How much longer than the way that is barred another one takes; infinite without one.
 
-        Raises `CommandError`.
+        Where something stands about where lanes meet, the way on may lead by no lane that is
+        closed: it is another one only where the base gets on along it. Raises `CommandError`.
         """
         here = self.body.pose()
         barred = self._following or self._barred
         if barred is None or not self.ways.leads_round(here, to, self._closed_now):
             return math.inf
-        longer_m = self._follower(to).length_m - barred.ahead_m
+        other = self._follower(to)
+        if not other.gets_on(here, self._look_around(here).points):
+            return math.inf
+        longer_m = other.length_m - barred.ahead_m
         return max(0.0, longer_m) / self.body.limits.speed_m_s
 
     def sees_out(self) -> bool:
@@ -272,8 +276,7 @@ class Base(Effector[BaseBody]):
             return WayAhead.FREE if gets_on else WayAhead.BARRED
         if self._barrier is None or self.round_takes_s(to) > patience_s:
             return WayAhead.BARRED
-        gets_on = self._follower(to).gets_on(here, points)
-        return WayAhead.ROUND if gets_on else WayAhead.BARRED
+        return WayAhead.ROUND
 
     # --- Within -------------------------------------------------------------------------------
 
