@@ -78,7 +78,15 @@ class DeliveryWays:
         return at_walls and dist((a.x, a.y), (b.x, b.y)) >= _SHORTEST_M
 
     def _without(self, between: tuple[str, str]) -> NavigationGraph:
-        ways = [each for each in self._graph.ways if {each.a, each.b} != set(between)]
+        """The ways but this lane, and whatever else leads through a door on it."""
+        barred = self._lanes[frozenset(between)]
+        shut = {
+            ends
+            for ends, each in self._lanes.items()
+            if each.floor == barred.floor and not set(barred.doors).isdisjoint(each.doors)
+        }
+        shut.add(frozenset(between))
+        ways = [each for each in self._graph.ways if frozenset((each.a, each.b)) not in shut]
         return NavigationGraph(self._graph.places, ways)
 
     def _steps(
