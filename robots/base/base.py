@@ -30,6 +30,8 @@ from mend.robots.link.messages import Driven
 SLOW_M_S, SLOW_RAD_S = 0.05, 0.1
 _SEES_OUT = 0.05
 """More of its beams lead out of an open cabin than fail to come back."""
+_CHANGES_S = 10.0
+"""Another elevator has to be quicker by so much than one for which a base waits already."""
 _ABOUT_THERE_M = 0.3
 """Robots say by so much where they are, at worst, and lasers what they see."""
 _BEHIND_M = 0.2
@@ -231,6 +233,18 @@ class Base(Effector[BaseBody]):
         shut = {**self._closed_now, **dict.fromkeys(self.ways.together(ride.between))}
         rides = self.ways.rides(self.body.pose(), to, shut)
         return () if any(frozenset(each.between) in shut for each in rides) else rides
+
+    def rides_sooner(self, ride: Ride, to: BasePose) -> Sequence[Ride]:
+        """The rides to a pose that begin with another elevator, as others are to ride before it in
+        this one; none where those are not quicker. Raises `CommandError`.
+        """
+        waits_s = {
+            name: wait_s if name == ride.elevator else wait_s + _CHANGES_S
+            for name, wait_s in self.elevators.waits_s().items()
+        }
+        rides = self.ways.rides(self.body.pose(), to, self._closed_now, waits_s)
+        goes = bool(rides) and rides[0].elevator != ride.elevator
+        return rides if goes and not any(map(self.is_closed, rides)) else ()
 
     def is_closed(self, ride: Ride) -> bool:
         """Whether its elevator counts as closed."""
