@@ -38,3 +38,17 @@ def test_another_lane_through_the_same_door_leads_round_nothing() -> None:
 def test_another_door_does() -> None:
     (door,) = ways(back_door=True).hindrances("F/left", "F/room")
     assert 5.0 < door.longer_s < inf
+
+
+def test_what_stands_right_across_a_hall_bars_all_lanes_there() -> None:
+    corners = {"a": (0.0, 0.0), "b": (4.0, 0.0), "c": (0.0, 2.0), "d": (4.0, 2.0)}
+    sides = [(-1.0, -1.0, 5.0, -1.0), (-1.0, 3.0, 5.0, 3.0)]
+    lanes = [("a", "b"), ("c", "d"), ("a", "c"), ("b", "d")]
+    floor = Floor(
+        places={name: FloorPlace(x=x, y=y) for name, (x, y) in corners.items()},
+        lanes=tuple(Lane(between=each) for each in lanes),
+        walls=tuple(sides),
+    )
+    hall = DeliveryWays(Building(BuildingDocument(building="hall", floors={"F": floor})))
+    (across,) = hall.hindrances("F/a", "F/b")
+    assert (across.is_door, across.longer_s) == (False, inf)
