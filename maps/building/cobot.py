@@ -103,11 +103,13 @@ def import_cobot(
         },
     )
     imported = tidied(Imported(document))
-    return Imported(imported.document, [*imported.notes, *_rooms(imported.document)])
+    return Imported(imported.document, [*imported.notes, *_not_said(imported.document)])
 
 
-def _rooms(document: BuildingDocument) -> Iterator[str]:
-    """What is told of places that the files do not call rooms."""
+def _not_said(document: BuildingDocument) -> Iterator[str]:
+    """What the files leave open, and what of it somebody has to say."""
+    if len(document.floors) > 1:
+        yield "how high floors are is not said: give each its 'height' before robots drive there"
     for name, floor in document.floors.items():
         rooms = [place for place, each in floor.places.items() if each.kind is PlaceKind.ROOM]
         if rooms:

@@ -42,6 +42,7 @@ def test_an_elevator_joins_the_nodes_that_are_said_to_be_one() -> None:
     floors = {"F1": CobotFloor(HALL), "F2": CobotFloor(HALL)}
     read = import_cobot("lab", floors, {"lift": {"F1": 2, "F2": 0}})
     assert read.notes[2:] == [
+        "how high floors are is not said: give each its 'height' before robots drive there",
         "floor 'F1': ways end at n0, which count as rooms",
         "floor 'F2': ways end at n2, which count as rooms",
     ]
