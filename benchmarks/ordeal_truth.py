@@ -79,10 +79,23 @@ class Truth:
         yield last
 
     def shut_between(self, begun_s: float, ended_s: float) -> Iterator[list[str]]:
-        """Which doors were shut in a span of wall time, also in what a kill undid."""
+        """Which doors were shut in a span of wall time, just before and next after it, also in what
+        a kill undid: on a busy machine a world says so only now and then."""
+        before: list[str] | None = None
         for each in self.lines:
-            if each.what == "state" and begun_s <= each.body["wall_s"] <= ended_s:
-                yield each.body["shut"]
+            if each.what != "state":
+                continue
+            if each.body["wall_s"] < begun_s:
+                before = each.body["shut"]
+                continue
+            if before is not None:
+                yield before
+                before = None
+            yield each.body["shut"]
+            if each.body["wall_s"] > ended_s:
+                return
+        if before is not None:
+            yield before
 
     def felt_alike_s(self, item: str) -> Iterator[float]:
         """When its robot offered it, and lost it, or what weighs about as much, to somebody else.

@@ -5,7 +5,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import dist, inf
 
+import numpy as np
+
 from mend.maps.building.building import Building, LaneCrossing, PlaceKind
+from mend.maps.building.crossing import crossed_by
 from mend.maps.building.right_across import right_across
 from mend.maps.navigation import NavigationGraph
 
@@ -78,8 +81,28 @@ class DeliveryWays:
         return at_walls and dist((a.x, a.y), (b.x, b.y)) >= _SHORTEST_M
 
     def _without(self, between: tuple[str, str]) -> NavigationGraph:
-        ways = [each for each in self._graph.ways if {each.a, each.b} != set(between)]
+        """The ways but those that are barred with a lane."""
+        barred = self._barred_with(self._lanes[frozenset(between)]) | {frozenset(between)}
+        ways = [each for each in self._graph.ways if frozenset((each.a, each.b)) not in barred]
         return NavigationGraph(self._graph.places, ways)
+
+    def _barred_with(self, barred: LaneCrossing) -> set[frozenset[str]]:
+        """The lanes through a door of a lane; of one without doors, those across which lies what
+        stands across it from wall to wall."""
+        floor = self._building.floors[barred.floor]
+        across = right_across(floor, barred.lane)[0]
+
+        def is_barred(lane: LaneCrossing) -> bool:
+            if barred.doors:
+                return not set(barred.doors).isdisjoint(lane.doors)
+            a, b = (floor.places[each] for each in lane.lane.between)
+            return len(crossed_by(np.array([a.x, a.y, b.x, b.y]), across)) > 0
+
+        return {
+            ends
+            for ends, each in self._lanes.items()
+            if each.floor == barred.floor and is_barred(each)
+        }
 
     def _steps(
         self, graph: NavigationGraph, origin: str, destination: str

@@ -1,11 +1,13 @@
 """Buildings as the CoBot navigation graphs have them, a file and perhaps a vector map a floor.
 
 Nodes have numbers and places, edges say whether a door or an elevator is on them. Which elevators
-of two floors are one, and how floors lie above each other, the files do not say.
+of two floors are one, how floors lie above each other, and which nodes are more than on the way,
+the files do not say: where a way ends robots are to go.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -100,7 +102,18 @@ def import_cobot(
             for elevator, stops in cabins.items()
         },
     )
-    return tidied(Imported(document))
+    imported = tidied(Imported(document))
+    return Imported(imported.document, [*imported.notes, *_not_said(imported.document)])
+
+
+def _not_said(document: BuildingDocument) -> Iterator[str]:
+    """What the files leave open, and what of it somebody has to say."""
+    if len(document.floors) > 1:
+        yield "how high floors are is not said: give each its 'height' before robots drive there"
+    for name, floor in document.floors.items():
+        rooms = [place for place, each in floor.places.items() if each.kind is PlaceKind.ROOM]
+        if rooms:
+            yield f"floor '{name}': ways end at {', '.join(rooms)}, which count as rooms"
 
 
 def _floor(graph: _Graph, walls: VectorMap | None, cabins: Sequence[int]) -> Floor:
@@ -114,12 +127,18 @@ def _floor(graph: _Graph, walls: VectorMap | None, cabins: Sequence[int]) -> Flo
         missing = [end for end in (each.s0_id, each.s1_id) if end not in at]
         if missing:
             raise WrongInputError(f"an edge leads to node {missing[0]}, which is not there")
-    on_lanes = {end for each in edges for end in (each.s0_id, each.s1_id)}
+    on_lanes = Counter(end for each in _apart(edges) for end in each)
+    in_cabins = {end for each in edges if each.has_elevator for end in (each.s0_id, each.s1_id)}
+
+    def kind(number: int) -> PlaceKind:
+        if number in cabins:
+            return PlaceKind.ELEVATOR
+        is_end = on_lanes[number] == 1 and number not in in_cabins
+        return PlaceKind.ROOM if is_end else PlaceKind.WAYPOINT
+
     return Floor(
         places={
-            f"n{number}": FloorPlace(
-                x=x, y=y, kind=PlaceKind.ELEVATOR if number in cabins else PlaceKind.WAYPOINT
-            )
+            f"n{number}": FloorPlace(x=x, y=y, kind=kind(number))
             for number, (x, y) in at.items()
             if number in on_lanes
         },
@@ -134,6 +153,11 @@ def _floor(graph: _Graph, walls: VectorMap | None, cabins: Sequence[int]) -> Flo
             if each.has_door
         },
     )
+
+
+def _apart(edges: Sequence[_Edge]) -> set[tuple[int, int]]:
+    """The ends of edges, each once however often and in whichever direction it is there."""
+    return {(min(each.s0_id, each.s1_id), max(each.s0_id, each.s1_id)) for each in edges}
 
 
 def _door(a: tuple[float, float], b: tuple[float, float], edge: _Edge) -> Door:

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from mend.errors import WrongInputError
 from mend.maps.building.building import (
@@ -26,6 +26,7 @@ from mend.maps.building.building import (
     Lane,
     PlaceKind,
 )
+from mend.maps.building.naming import unlike
 from mend.maps.building.tidying import Imported, tidied
 
 Matrix = NDArray[np.float64]
@@ -37,14 +38,16 @@ _DECIMALS = 3
 
 Text = Annotated[str, BeforeValidator(str)]
 """Names may be numbers there."""
+Coordinate = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
+"""Of a drawing, in pixels, metres or degrees."""
 Properties = dict[str, tuple[int, Any]]
 Vertex = (
-    tuple[float, float, float]
-    | tuple[float, float, float, Text]
-    | (tuple[float, float, float, Text, Properties])
+    tuple[Coordinate, Coordinate, float]
+    | tuple[Coordinate, Coordinate, float, Text]
+    | (tuple[Coordinate, Coordinate, float, Text, Properties])
 )
 Edge = tuple[int, int] | tuple[int, int, Properties]
-Fiducial = tuple[float, float, Text]
+Fiducial = tuple[Coordinate, Coordinate, Text]
 
 
 class _Lenient(BaseModel):
@@ -66,8 +69,8 @@ class _Lift(_Lenient):
 
     level_doors: dict[Text, list[Text]] = {}
     reference_floor_name: Text | None = None
-    x: float = 0.0
-    y: float = 0.0
+    x: Coordinate = 0.0
+    y: Coordinate = 0.0
     yaw: float = 0.0
     width: float = 0.0
     depth: float = 0.0
@@ -89,6 +92,8 @@ def import_open_rmf(content: Any, graphs: Sequence[int] = ()) -> Imported:
     plan = _Plan.model_validate(content)
     if not plan.levels:
         raise WrongInputError("the plan has no levels")
+    for name, level in plan.levels.items():
+        _require_vertices(name, level)
     notes: list[str] = []
     frames = _frames(plan)
     order = sorted(plan.levels, key=lambda each: plan.levels[each].elevation)
@@ -247,7 +252,6 @@ def _read_level(
     lanes = [
         each for each in level.lanes if not graphs or _property(each, "graph_idx", 0) in graphs
     ]
-    _require_vertices(name, level)
     on_lanes = sorted({end for each in lanes for end in each[:2]})
     lifts = _lifts_at(name, level, points, on_lanes, shafts)
     names = _names(name, level, on_lanes, lifts, notes)
@@ -299,7 +303,13 @@ def _lifts_at(
 
 
 def _require_vertices(name: str, level: _Level) -> None:
-    for what, edges in (("lane", level.lanes), ("wall", level.walls), ("door", level.doors)):
+    kinds = {
+        "lane": level.lanes,
+        "wall": level.walls,
+        "door": level.doors,
+        "measurement": level.measurements,
+    }
+    for what, edges in kinds.items():
         for number, each in enumerate(edges):
             if not all(0 <= end < len(level.vertices) for end in each[:2]):
                 raise WrongInputError(
@@ -321,10 +331,7 @@ def _names(
     for each in on_lanes:
         vertex = level.vertices[each]
         own = _plain(_name_of(vertex)) or _plain(lifts.get(each, "")) or f"v{each}"
-        called, number = own, 1
-        while called in taken:
-            number += 1
-            called = f"{own}_{number}"
+        called = unlike(own, taken)
         if called != own:
             notes.append(f"level '{name}' has two places '{own}': one is called '{called}' here")
         names[each] = called
@@ -354,7 +361,7 @@ def _doors(name: str, level: _Level, points: Matrix, notes: list[str]) -> dict[s
     doors: dict[str, Door] = {}
     for number, each in enumerate(level.doors):
         own = _plain(str(_property(each, "name", ""))) or f"door{number}"
-        called = own if own not in doors else f"{own}_{number}"
+        called = unlike(own, doors)
         if called != own:
             notes.append(f"level '{name}' has two doors '{own}': one is called '{called}' here")
         x0, y0, x1, y1 = _segment(points, each)
@@ -366,7 +373,7 @@ def _doors(name: str, level: _Level, points: Matrix, notes: list[str]) -> dict[s
 
 
 def _elevators(plan: _Plan, read: Mapping[str, _Read], notes: list[str]) -> dict[str, Elevator]:
-    elevators = {}
+    elevators: dict[str, Elevator] = {}
     for lift, each in plan.lifts.items():
         served = _served(plan, each)
         stops = {
@@ -379,7 +386,8 @@ def _elevators(plan: _Plan, read: Mapping[str, _Read], notes: list[str]) -> dict
                 f"the lift '{lift}' has lanes on {len(stops)} of its levels: it is left out"
             )
         else:
-            elevators[_plain(lift)] = Elevator(stops=stops, called_by=Caller.ROBOTS)
+            called = unlike(_plain(lift) or "lift", elevators)
+            elevators[called] = Elevator(stops=stops, called_by=Caller.ROBOTS)
     return elevators
 
 

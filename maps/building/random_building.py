@@ -188,7 +188,9 @@ class _FloorDrawing:
         self._wall(right, front, room.right_m, front)
         if room.kind is not PlaceKind.CHARGER:
             opens = DoorOpening.ITSELF if opens_itself else DoorOpening.PEOPLE
-            self.doors[name] = Door(posts=((left, front), (right, front)), opens=opens)
+            # An elevator is called so on every floor, and none of its doors is.
+            door = f"F{self.number} {name} door" if room.kind is PlaceKind.ELEVATOR else name
+            self.doors[door] = Door(posts=((left, front), (right, front)), opens=opens)
 
     def _outline(self) -> None:
         length_m, begin_m = self.plan.length_m, self.plan.begin_m

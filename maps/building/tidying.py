@@ -6,8 +6,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from mend.errors import WrongInputError
 from mend.maps.building.building import Building, BuildingDocument, Floor, Lane
 from mend.maps.building.connection import connected
+from mend.maps.building.naming import with_plain_door_names
 
 Matrix = NDArray[np.float64]
 Wall = tuple[float, float, float, float]
@@ -30,12 +32,33 @@ class Imported:
 def tidied(imported: Imported) -> Imported:
     """Without lanes that lead through walls, and without what robots cannot get to and back from.
 
-    A plan may draw shut doors as walls: they are opened there.
+    A plan may draw shut doors as walls: they are opened there. Doors get names of their own. Raises
+    `WrongInputError` for a plan without lanes.
     """
+    if not any(floor.lanes for floor in imported.document.floors.values()):
+        raise WrongInputError("no lanes are in the plan: robots would have nowhere to drive")
     notes = [*imported.notes]
-    opened = _with_doorways(Building(imported.document))
+    opened = _with_doorways(Building(_without_points(imported.document, notes)))
     clear = _without_lanes_through_walls(Building(opened), notes)
-    return Imported(_connected_part(Building(clear), notes), notes)
+    usable = _connected_part(Building(clear), notes)
+    return Imported(with_plain_door_names(usable, notes), notes)
+
+
+def _without_points(document: BuildingDocument, notes: list[str]) -> BuildingDocument:
+    """Without lanes and doors that begin and end in one place."""
+    floors = {}
+    for name, floor in document.floors.items():
+        points = [each for each in floor.lanes if each.between[0] == each.between[1]]
+        shut = [door for door, each in floor.doors.items() if each.posts[0] == each.posts[1]]
+        if points:
+            ends = [f"{each.between[0]} to itself" for each in points]
+            notes.append(f"floor '{name}': {_counted(ends, 'lane')} left out")
+        if shut:
+            notes.append(f"floor '{name}': {_counted(shut, 'door')} without width, and left out")
+        lanes = tuple(each for each in floor.lanes if each not in points)
+        doors = {door: each for door, each in floor.doors.items() if door not in shut}
+        floors[name] = floor.model_copy(update={"lanes": lanes, "doors": doors})
+    return document.model_copy(update={"floors": floors})
 
 
 def _with_doorways(building: Building) -> BuildingDocument:

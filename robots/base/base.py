@@ -30,6 +30,8 @@ from mend.robots.link.messages import Driven
 SLOW_M_S, SLOW_RAD_S = 0.05, 0.1
 _SEES_OUT = 0.05
 """More of its beams lead out of an open cabin than fail to come back."""
+_CHANGES_S = 10.0
+"""Another elevator has to be quicker by so much than one for which a base waits already."""
 _ABOUT_THERE_M = 0.3
 """Robots say by so much where they are, at worst, and lasers what they see."""
 _BEHIND_M = 0.2
@@ -232,6 +234,18 @@ class Base(Effector[BaseBody]):
         rides = self.ways.rides(self.body.pose(), to, shut)
         return () if any(frozenset(each.between) in shut for each in rides) else rides
 
+    def rides_sooner(self, ride: Ride, to: BasePose) -> Sequence[Ride]:
+        """The rides to a pose that begin with another elevator, as others are to ride before it in
+        this one; none where those are not quicker. Raises `CommandError`.
+        """
+        waits_s = {
+            name: wait_s if name == ride.elevator else wait_s + _CHANGES_S
+            for name, wait_s in self.elevators.waits_s().items()
+        }
+        rides = self.ways.rides(self.body.pose(), to, self._closed_now, waits_s)
+        goes = bool(rides) and rides[0].elevator != ride.elevator
+        return rides if goes and not any(map(self.is_closed, rides)) else ()
+
     def is_closed(self, ride: Ride) -> bool:
         """Whether its elevator counts as closed."""
         return frozenset(ride.between) in self._closed_now
@@ -239,13 +253,17 @@ class Base(Effector[BaseBody]):
     def round_takes_s(self, to: BasePose) -> float:
         """How much longer than the way that is barred another one takes; infinite without one.
 
-        Raises `CommandError`.
+        Where something stands about where lanes meet, the way on may lead by no lane that is
+        closed: it is another one only where the base gets on along it. Raises `CommandError`.
         """
         here = self.body.pose()
         barred = self._following or self._barred
         if barred is None or not self.ways.leads_round(here, to, self._closed_now):
             return math.inf
-        longer_m = self._follower(to).length_m - barred.ahead_m
+        other = self._follower(to)
+        if not other.gets_on(here, self._look_around(here).points):
+            return math.inf
+        longer_m = other.length_m - barred.ahead_m
         return max(0.0, longer_m) / self.body.limits.speed_m_s
 
     def sees_out(self) -> bool:
@@ -272,8 +290,7 @@ class Base(Effector[BaseBody]):
             return WayAhead.FREE if gets_on else WayAhead.BARRED
         if self._barrier is None or self.round_takes_s(to) > patience_s:
             return WayAhead.BARRED
-        gets_on = self._follower(to).gets_on(here, points)
-        return WayAhead.ROUND if gets_on else WayAhead.BARRED
+        return WayAhead.ROUND
 
     # --- Within -------------------------------------------------------------------------------
 

@@ -1,5 +1,6 @@
 """What a base may ask of elevators."""
 
+from collections.abc import Mapping
 from typing import Protocol
 
 from mend.robots.base.ways import Ride
@@ -19,6 +20,17 @@ class Elevators(Protocol):
         """Want no ride any more."""
         ...
 
+    def heads_for(self, elevator: str) -> None:
+        """Say which one it is on its way to, so that others know; until it asks, or withdraws."""
+        ...
+
+    def waits_s(self) -> Mapping[str, float]:
+        """How long others take who are to ride before it, of each elevator that robots call.
+
+        What people call knows of nobody who waits.
+        """
+        ...
+
     def is_open_for(self, ride: Ride) -> bool:
         """Whether the cabin is open where the ride begins, and this robot's turn it is."""
         ...
@@ -32,6 +44,13 @@ class NoElevators:
 
     def withdraw(self) -> None:
         """Nothing."""
+
+    def heads_for(self, elevator: str) -> None:
+        """Nobody hears it."""
+
+    def waits_s(self) -> Mapping[str, float]:
+        """Of none."""
+        return {}
 
     def is_open_for(self, ride: Ride) -> bool:  # noqa: ARG002
         """Never."""

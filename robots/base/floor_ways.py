@@ -22,7 +22,7 @@ from mend.robots.base.body import BasePose
 from mend.robots.base.closed_ways import NO_WAYS, Closed, Lane
 from mend.robots.base.motion.surroundings import NOTHING, Points
 from mend.robots.base.open_door import Posts
-from mend.robots.base.ways import Ride
+from mend.robots.base.ways import NO_WAITS, Ride
 from mend.robots.execution.command_error import CommandError
 from mend.tasks.frames import Frame
 
@@ -94,20 +94,38 @@ class FloorWays:
         lanes = self._along_lanes(*self._on_one_floor(here, to), closed)
         return not any(frozenset((a.name, b.name)) in closed for a, b in pairwise(lanes))
 
-    def rides(self, here: BasePose, to: BasePose, closed: Closed = NO_WAYS) -> Sequence[Ride]:
+    def rides(
+        self,
+        here: BasePose,
+        to: BasePose,
+        closed: Closed = NO_WAYS,
+        waits_s: Mapping[str, float] = NO_WAITS,
+    ) -> Sequence[Ride]:
         """The rides between two poses, in the order in which they are taken.
 
-        Raises `CommandError` where there is no way.
+        Nobody is asked to call an elevator only because another one takes longer now. Raises
+        `CommandError` where there is no way.
         """
+        quickest = self._rides(here, to, closed, waits_s)
+        if any(waits_s.values()) and not all(each.called for each in quickest):
+            return self._rides(here, to, closed, NO_WAITS)
+        return quickest
+
+    def _rides(
+        self, here: BasePose, to: BasePose, closed: Closed, waits_s: Mapping[str, float]
+    ) -> Sequence[Ride]:
         floor, goal_floor = self._floor(here), self._floor(to)
         if floor == goal_floor:
             return ()
         start, goal = self._on_map(here), self._on_map(to)
         in_cabin = any(n == floor and math.dist(at, start) < CABIN_M for n, at in self._cabins)
+        if in_cabin:
+            waits_s = NO_WAITS
         # Who stands before one elevator may take another.
         begin = self._first(floor, start, closed, () if in_cabin else self._stops)
         end = self._nearest(goal_floor, goal)
-        path = _named_path(_kept_off(self._all, closed), begin, end, self._speed_m_s)
+        graph = self._later(_kept_off(self._all, closed), waits_s)
+        path = _named_path(graph, begin, end, self._speed_m_s)
         rides = []
         for number, (a, b) in enumerate(pairwise(path)):
             if a.floor != b.floor:
@@ -209,6 +227,18 @@ class FloorWays:
         return self._ends_m(lane, self._on_map(here))
 
     # --- Within -------------------------------------------------------------------------------
+
+    def _later(self, graph: NavigationGraph, waits_s: Mapping[str, float]) -> NavigationGraph:
+        """A graph in which elevators take so much longer."""
+        if not any(waits_s.values()):
+            return graph
+
+        def now(way: Way) -> Way:
+            if way.kind is not WayKind.ELEVATOR:
+                return way
+            return replace(way, delay_s=way.delay_s + waits_s.get(self._stops[way.a], 0.0))
+
+        return NavigationGraph(graph.places, map(now, graph.ways))
 
     def _ride(self, begin: str, end: str, after: Place | None) -> Ride:
         """From stop to stop; `after` is where the way leads on from there."""

@@ -218,6 +218,7 @@ class BaseSubsystem:
             ways=self.effector.ways,
             basket=self.effector.basket,
             closed=self.effector.closed.at(self.effector.body.time_s()),
+            waits_s=self.effector.elevators.waits_s(),
             companion=self.effector.companion,
         )
 

@@ -9,6 +9,8 @@ from mend.robots.base.closed_ways import NO_WAYS, Closed, Lane
 from mend.robots.base.motion.surroundings import NOTHING, Points
 from mend.robots.base.open_door import Posts
 
+NO_WAITS: Mapping[str, float] = {}
+
 
 @dataclass(frozen=True, slots=True)
 class Ride:
@@ -53,10 +55,17 @@ class Ways(Protocol):
         """
         ...
 
-    def rides(self, here: BasePose, to: BasePose, closed: Closed = NO_WAYS) -> Sequence[Ride]:
+    def rides(
+        self,
+        here: BasePose,
+        to: BasePose,
+        closed: Closed = NO_WAYS,
+        waits_s: Mapping[str, float] = NO_WAITS,
+    ) -> Sequence[Ride]:
         """The rides to take from one pose to another; none where both are on one floor.
 
-        Raises `CommandError` where there is no way.
+        `waits_s`: how much longer each elevator takes now. Raises `CommandError` where there is no
+        way.
         """
         ...
 
@@ -126,6 +135,7 @@ class StraightWays:
         here: BasePose,  # noqa: ARG002
         to: BasePose,  # noqa: ARG002
         closed: Closed = NO_WAYS,  # noqa: ARG002
+        waits_s: Mapping[str, float] = NO_WAITS,  # noqa: ARG002
     ) -> Sequence[Ride]:
         """None: it knows one floor."""
         return ()

@@ -89,12 +89,18 @@ class FleetAtWork:
             FleetNews(site.id, dispatcher, utc_now),
             journal,
             lambda: tuple(self._errands.going.values()),
+            lambda: self._held_cabins.held,
             kept,
         )
         self._failed_robots = FailedRobots(dispatcher, site.whereabouts, self._book.met_at)
         self._found_ways = FoundWays(dispatcher, self._book.closed_ways, site.whereabouts)
         self._held_cabins = HeldCabins(
-            dispatcher, self._book.closed_ways, site.whereabouts, places.around, self._is_idle
+            dispatcher,
+            self._book.closed_ways,
+            site.whereabouts,
+            places.around,
+            self._is_idle,
+            {} if kept is None else kept.held_cabins,
         )
         self._charging = Charging(dispatcher, site.battery, places.names)
         self._legs = LegsUnderWay(site, lambda: self._options, runs, self._book)
@@ -168,7 +174,7 @@ class FleetAtWork:
             under_way = self.dispatcher.legs_under_way()
             robots = self.dispatcher.fleet.robots.items()
             failed = [name for name, each in robots if not each.works]
-            failed += [each for each in self._held_cabins.holders if each not in failed]
+            failed += [each for each in self._held_cabins.held if each not in failed]
             self._site.keep_off(self.dispatcher.closed_until_s(), failed)
             self._site.note_taken(taken_out(self.dispatcher))
             for execution in self._legs.executions.values():

@@ -1,7 +1,7 @@
 """What a fleet knows: it is in the journal before anybody hears of it."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 
 from mend.errors import NotFoundError
@@ -19,7 +19,8 @@ from mend.server.sites.site import Site
 class FleetBook:
     """The state of one fleet, which one at a time changes while it holds `at_once`.
 
-    `changed` is set whenever there may be something to do for it. `errands`: those under way.
+    `changed` is set whenever there may be something to do for it. `errands`: those under way;
+    `held_cabins`: the elevators in whose cabins robots stay, by robot.
     """
 
     def __init__(
@@ -30,11 +31,13 @@ class FleetBook:
         news: FleetNews,
         journal: Journal,
         errands: Callable[[], tuple[Errand, ...]],
+        held_cabins: Callable[[], Mapping[str, str]],
         kept: FleetRecord | None,
     ) -> None:
         """`kept`: what was known beside the dispatcher when the service stopped."""
         self.dispatcher, self.places, self.news = dispatcher, places, news
-        self._site, self._journal, self._errands = site, journal, errands
+        self._site, self._journal = site, journal
+        self._errands, self._held_cabins = errands, held_cabins
         self.at_once = asyncio.Lock()
         self.changed = asyncio.Event()
         self.closed_ways = ClosedWays(dispatcher, () if kept is None else kept.closed_ways)
@@ -95,6 +98,7 @@ class FleetBook:
             out_of_service=self.out_of_service,
             errands=self._errands(),
             closed_ways=self.closed_ways.kept(),
+            held_cabins=dict(self._held_cabins()),
         )
         if not events and record == self._kept:
             return

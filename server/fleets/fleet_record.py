@@ -33,10 +33,12 @@ class ToldWay(StrictModel):
 class FleetRecord(StrictModel):
     """A fleet at work; `out_of_service`: the robots that somebody has taken out, and why.
 
-    `errands` and `closed_ways` are those that there are now.
+    `errands` and `closed_ways` are those that there are now; `held_cabins`: the elevators in whose
+    cabins robots stay, by robot.
     """
 
     dispatcher: DispatcherSnapshot
     out_of_service: dict[str, str]
     errands: tuple[Errand, ...] = ()
     closed_ways: tuple[ToldWay, ...] = ()
+    held_cabins: dict[str, str] = {}

@@ -1,6 +1,6 @@
 """Elevators that nobody can ride, as a robot that has nothing to do stays in the cabin."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from mend.fleet.dispatch.dispatcher import Dispatcher
@@ -27,7 +27,8 @@ class HeldCabins:
     """Follows in which cabins robots of one fleet stay, so that nobody is to ride there.
 
     `whereabouts`: where a robot says that it is; `around`: the places to which one is sent from
-    there, the nearest first; `is_idle`: whether it does nothing for anybody.
+    there, the nearest first; `is_idle`: whether it does nothing for anybody; `kept`: the elevators
+    whose cabins were held when the service stopped, by robot.
     """
 
     def __init__(
@@ -37,17 +38,18 @@ class HeldCabins:
         whereabouts: Callable[[str], Point | None],
         around: Callable[[float, float, float], Sequence[str]],
         is_idle: Callable[[str], bool],
+        kept: Mapping[str, str],
     ) -> None:
         self._dispatcher, self._closed = dispatcher, closed
         self._whereabouts, self._around, self._is_idle = whereabouts, around, is_idle
         self._in: dict[str, HeldCabin] = {}
-        self._held: dict[str, str] = {}
+        self._held = dict(kept)
         self._again_s: dict[str, float] = {}
 
     @property
-    def holders(self) -> list[str]:
-        """The robots that stay in cabins."""
-        return list(self._held)
+    def held(self) -> Mapping[str, str]:
+        """The elevators in whose cabins robots stay, by robot."""
+        return self._held
 
     def saw(self, robot: str, here: Point, now_s: float) -> bool:
         """A robot says where it is; whether that is news, as one with nothing to do has come into a
@@ -66,8 +68,12 @@ class HeldCabins:
         that is forgotten before.
         """
         for robot in self._dispatcher.fleet.robots:
-            self._look(robot, self._whereabouts(robot), now_s)
-            elevator, before = self._due(robot, now_s), self._held.get(robot)
+            here, before = self._whereabouts(robot), self._held.get(robot)
+            if before is not None and here is None:
+                # It has not said anything yet since the service began anew.
+                continue
+            self._look(robot, here, now_s)
+            elevator = self._due(robot, now_s)
             if before is not None and elevator != before:
                 del self._held[robot]
                 self._again_s.pop(robot, None)
@@ -116,7 +122,10 @@ class HeldCabins:
     def _due(self, robot: str, now_s: float) -> str | None:
         """The elevator whose cabin a robot holds."""
         known = self._in.get(robot)
-        return known.elevator if known and now_s >= known.since_s + STAYS_S else None
+        if known is None:
+            return None
+        is_held = self._held.get(robot) == known.elevator
+        return known.elevator if is_held or now_s >= known.since_s + STAYS_S else None
 
     def _told(self, robot: str, elevator: str, finding: Finding) -> Found:
         a, b = self._stops(elevator)

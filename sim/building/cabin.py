@@ -81,6 +81,11 @@ class Cabin:
         """What a robot wants of it."""
         return next((each for each in self.calls if each.robot == robot), None)
 
+    def takes_s(self, call: Call) -> float:
+        """How long it takes about to carry out a call."""
+        floors = abs(self.order.index(call.begin) - self.order.index(call.wants))
+        return self.plan.ride_s + floors * self.plan.floor_s
+
     def withdraw(self, robot: int) -> None:
         """A robot wants nothing of it any more."""
         self.calls = [each for each in self.calls if each.robot != robot]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mend.documents.strict_model import StrictModel
-from mend.maps.building.building import Building
+from mend.maps.building.building import Building, Caller
 from mend.maps.building.cabin import CABIN_M, CORNER_M, cabin_walls, stop_of
 from mend.robots.base.ways import Ride
 from mend.sim.building.building_robot import BuildingRobot
@@ -75,6 +75,8 @@ class ElevatorBank:
             name: {floor: stop_of(building, name, floor) for floor in each.plan.stops}
             for name, each in self.cabins.items()
         }
+        self._heading: dict[int, str] = {}
+        """The elevator to which each robot is on its way, by their numbers."""
 
     # --- Where things are ---------------------------------------------------------------------
 
@@ -191,7 +193,7 @@ class ElevatorBank:
 
     def of_robot(self, number: int) -> "RobotElevators":
         """The elevators as one robot has them."""
-        return RobotElevators(self.cabins, number)
+        return RobotElevators(self.cabins, self._heading, number)
 
     def wants_ride(self, number: int) -> bool:
         """Whether a robot wants to ride anywhere."""
@@ -239,17 +241,41 @@ class ElevatorBank:
 class RobotElevators:
     """Implements `mend.robots.base.elevators.Elevators` for one robot, by its number."""
 
-    def __init__(self, cabins: Mapping[str, Cabin], number: int) -> None:
-        self._cabins = cabins
+    def __init__(self, cabins: Mapping[str, Cabin], heading: dict[int, str], number: int) -> None:
+        """`heading`: to which elevator each robot is on its way."""
+        self._cabins, self._heading = cabins, heading
         self._number = number
 
     def ask(self, ride: Ride, *, stay_open: bool = False) -> None:
+        self._heading.pop(self._number, None)
         cabin = self._cabins[ride.elevator]
         cabin.call(self._number, ride.from_floor, ride.to_floor, stay_open=stay_open)
 
     def withdraw(self) -> None:
+        self._heading.pop(self._number, None)
         for each in self._cabins.values():
             each.withdraw(self._number)
+
+    def heads_for(self, elevator: str) -> None:
+        self._heading[self._number] = elevator
+
+    def waits_s(self) -> Mapping[str, float]:
+        return {
+            name: self._wait_s(cabin)
+            for name, cabin in self._cabins.items()
+            if cabin.plan.called_by is Caller.ROBOTS
+        }
+
+    def _wait_s(self, cabin: Cabin) -> float:
+        """How long those take who have called a cabin, or are to call it, before this robot."""
+        mine = cabin.call_of(self._number)
+        if mine is not None:
+            return sum(cabin.takes_s(each) for each in cabin.calls[: cabin.calls.index(mine)])
+        others = sum(
+            elevator == cabin.name and number != self._number
+            for number, elevator in self._heading.items()
+        )
+        return sum(map(cabin.takes_s, cabin.calls)) + others * cabin.plan.ride_s
 
     def is_open_for(self, ride: Ride) -> bool:
         return self._cabins[ride.elevator].is_open_for(self._number, ride.from_floor)

@@ -2,12 +2,11 @@
 
 import math
 import re
-from collections.abc import Container
-from itertools import chain, count
 
 from mend.errors import WrongInputError
 from mend.maps.building.building import Building, FloorPlace, PlaceKind
 from mend.maps.building.cabin import waiting_points
+from mend.maps.building.naming import LONGEST, unlike
 from mend.sim.building.building_robot import RADIUS_M
 from mend.tasks.scene import Base, Place, Pose, Scene
 
@@ -19,7 +18,6 @@ APART_M = 1.0
 _ODD = re.compile(r"[^A-Za-z0-9_-]")
 _BEGINS = (PlaceKind.CHARGER, PlaceKind.PARKING, PlaceKind.WAYPOINT, PlaceKind.ROOM)
 """Where robots begin on a floor, the first kind first: two hardly meet in a room's door."""
-_LONGEST = 64
 
 
 def scene_of(building: Building, name: str, robots: int) -> Scene:
@@ -38,7 +36,7 @@ def scene_of(building: Building, name: str, robots: int) -> Scene:
     places: dict[str, Place] = {}
     for full in named:
         if (pose := where_to_stand(building, full)) is not None:
-            places[_unlike(scene_name(full), places)] = Place(pose=pose)
+            places[unlike(scene_name(full), places)] = Place(pose=pose)
     begins = _begins(building, robots)
     return Scene(
         name=name,
@@ -52,13 +50,7 @@ def scene_of(building: Building, name: str, robots: int) -> Scene:
 def scene_name(full: str) -> str:
     """What a place, `FLOOR/PLACE`, is called in scenes, whose names are plainer."""
     name = _ODD.sub("_", full.replace("/", "-"))
-    return (name if name[0].isalpha() else f"L{name}")[:_LONGEST]
-
-
-def _unlike(name: str, others: Container[str]) -> str:
-    """The name, or one with a number where others are called so."""
-    tries = (f"{name[: _LONGEST - 1 - len(str(number))]}_{number}" for number in count(2))
-    return next(each for each in chain([name], tries) if each not in others)
+    return (name if name[0].isalpha() else f"L{name}")[:LONGEST]
 
 
 def _begins(building: Building, robots: int) -> list[Base]:

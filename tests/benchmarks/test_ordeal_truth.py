@@ -90,3 +90,19 @@ def test_what_was_in_a_basket_in_a_span_and_just_before(tmp_path: Path) -> None:
     assert list(truth.baskets_between(100.5, 101.5, 0)) == [held, empty]
     assert list(truth.baskets_between(100.5, 101.5, 1)) == [empty, empty]
     assert list(truth.baskets_between(100.2, 100.8, 0)) == [held]
+
+
+def test_a_span_in_which_nothing_is_told_has_what_was_told_around_it(tmp_path: Path) -> None:
+    shut = [(1.0, ["a"]), (2.0, ["b"]), (9.0, ["c"]), (12.0, ["d"])]
+    truth = Truth(
+        written(
+            tmp_path,
+            [
+                {"t": wall_s, "wall_s": wall_s, "what": "state", "shut": doors, "robots": []}
+                for wall_s, doors in shut
+            ],
+        )
+    )
+    assert list(truth.shut_between(4.0, 5.0)) == [["b"], ["c"]]
+    assert list(truth.shut_between(1.5, 2.5)) == [["a"], ["b"], ["c"]]
+    assert list(truth.shut_between(20.0, 21.0)) == [["d"]]

@@ -151,6 +151,7 @@ class BaseSituation:
     ways: Ways
     basket: Basket = field(default_factory=NoBasket)
     closed: Closed = field(default_factory=dict)
+    waits_s: Mapping[str, float] = field(default_factory=dict)
     companion: Companion = field(default_factory=NoCompanion)
 
 
@@ -195,7 +196,9 @@ def steps_to(
     """
     if situation.target is None:
         raise CommandError(f"it is not known where '{place}' is")
-    rides = situation.ways.rides(situation.here, situation.target, situation.closed)
+    rides = situation.ways.rides(
+        situation.here, situation.target, situation.closed, situation.waits_s
+    )
     steps = [step for ride in rides for step in steps_of_ride(ride, leads)]
     return [*steps, _drive(f"go to {place}", situation.target, leads, near_m)]
 

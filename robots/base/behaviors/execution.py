@@ -139,6 +139,7 @@ class BaseExecution(Execution[BaseProgress]):
         self._base.company.start_anew()
         self._forget_offers_elsewhere()
         self._base.basket.memory.asked = None
+        self._other.announce(progress.steps[self._done :])
         self._invite()
         self._watch.check()
         yield from self._find_out()

@@ -1,4 +1,4 @@
-"""Taking another elevator where one does not come."""
+"""Taking another elevator where one does not come, or others are to ride in it before."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -42,25 +42,37 @@ class OtherElevator:
             self._report(WayFound(finding="open", between=list(ride.between)))
 
     def leads_there(self, step: GetIn) -> bool:
-        """Whether an elevator counts as dead or closed, and others ride where it is to go.
+        """Whether an elevator counts as dead or closed, or is wanted by others before, and another
+        one rides where it is to go, or does so sooner.
 
         That is found out once a second at most.
         """
         now_s = self._base.body.time_s()
-        if now_s < self._looks_s or not self._is_dead(step.ride):
+        if now_s < self._looks_s or not (self._is_dead(step.ride) or self._is_busy(step)):
             return False
         self._looks_s = now_s + 1.0
         return bool(self._rest(step))
 
     def take(self, step: GetIn) -> bool:
         """Go to another one from here, if that leads there; whether it does."""
-        steps = self._rest(step) if self._is_dead(step.ride) else ()
+        is_dead = self._is_dead(step.ride)
+        steps = self._rest(step) if is_dead or self._is_busy(step) else ()
         if not steps:
             return False
-        self._note_dead(step.ride)
+        if is_dead:
+            self._note_dead(step.ride)
+        self._progress.awaits_s.pop(step.ride.elevator, None)
         done = self._progress.steps[: self._progress.step - 1]
         self._progress.steps = [*done, *steps]
+        self._base.elevators.withdraw()
+        self.announce(steps)
         return True
+
+    def announce(self, steps: Sequence[BaseStep]) -> None:
+        """Say to which elevator it is on its way next, if to any."""
+        ahead = next((each for each in steps if isinstance(each, GetIn | RideUntilThere)), None)
+        if isinstance(ahead, GetIn):
+            self._base.elevators.heads_for(ahead.ride.elevator)
 
     def give_up(self) -> None:
         """What it waits for is given up: it asked for an elevator in vain."""
@@ -77,6 +89,11 @@ class OtherElevator:
     def _is_dead(self, ride: Ride) -> bool:
         return self._waited_s(ride) >= DEAD_S or self._base.is_closed(ride)
 
+    def _is_busy(self, step: GetIn) -> bool:
+        """Whether others are to ride before it; with whom it leads it stays."""
+        ahead_s = self._base.elevators.waits_s().get(step.ride.elevator, 0.0)
+        return step.leads is None and ahead_s > 0.0
+
     def _waited_s(self, ride: Ride) -> float:
         now_s = self._base.body.time_s()
         return now_s - self._progress.awaits_s.get(ride.elevator, now_s)
@@ -89,8 +106,10 @@ class OtherElevator:
             return ()
         drive = left[arrives]
         assert isinstance(drive, Drive), "a journey ends with one"
+        dead = self._is_dead(step.ride)
+        others = self._base.rides_round if dead else self._base.rides_sooner
         try:
-            rides = self._base.rides_round(step.ride, drive.to)
+            rides = others(step.ride, drive.to)
         except CommandError:
             return ()
         again = [each for ride in rides for each in steps_of_ride(ride, step.leads)]

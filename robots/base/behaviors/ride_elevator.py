@@ -31,7 +31,9 @@ class RideElevator(BaseBehavior):
         assert isinstance(parameters, RideElevatorParameters), "commands are checked before"
         if situation.target is None:
             raise CommandError("ride_elevator needs a place on the floor to ride to")
-        rides = situation.ways.rides(situation.here, situation.target, situation.closed)
+        rides = situation.ways.rides(
+            situation.here, situation.target, situation.closed, situation.waits_s
+        )
         steps: list[BaseStep] = []
         for ride in rides:
             out = Drive(f"get out of {ride.elevator}", ride.out_at)

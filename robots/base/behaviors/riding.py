@@ -63,7 +63,6 @@ class Riding:
                 stay_open=_has_company(step),
             )
             if not elevators.is_open_for(ride) and self._other.take(step):
-                elevators.withdraw()
                 return False
             yield from self._driving.take(
                 Drive(step.name, place_in(step)), lambda: not elevators.is_open_for(ride)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mend.errors import WrongInputError
-from mend.maps.building.building import Building, DoorOpening
+from mend.maps.building.building import Building, DoorOpening, PlaceKind
 from mend.maps.building.building_file import check_building
 from mend.maps.building.cobot import CobotFloor, import_cobot
 from mend.maps.vector_map import VectorMap
@@ -41,7 +41,11 @@ def test_a_door_is_in_the_middle_of_its_edge_and_opens_the_wall_there() -> None:
 def test_an_elevator_joins_the_nodes_that_are_said_to_be_one() -> None:
     floors = {"F1": CobotFloor(HALL), "F2": CobotFloor(HALL)}
     read = import_cobot("lab", floors, {"lift": {"F1": 2, "F2": 0}})
-    assert read.notes == []
+    assert read.notes[2:] == [
+        "how high floors are is not said: give each its 'height' before robots drive there",
+        "floor 'F1': ways end at n0, which count as rooms",
+        "floor 'F2': ways end at n2, which count as rooms",
+    ]
     graph_of = Building(read.document).graph
     assert np.isfinite(graph_of.shortest(1.0)[0]).all()
 
@@ -63,3 +67,24 @@ def test_what_is_not_there_is_told() -> None:
         import_cobot("lab", {"F1": CobotFloor(HALL)}, {"lift": {"F1": 9}})
     with pytest.raises(WrongInputError, match="leads to node 7"):
         import_cobot("lab", {"F1": CobotFloor(graph(edge(0, 7)))})
+
+
+def test_where_a_way_ends_is_a_room() -> None:
+    # 3 is where an elevator is that nobody has said to be one.
+    forked = graph(edge(0, 1), edge(1, 0), edge(1, 2), edge(1, 3, has_elevator=True), nodes=4)
+    read = import_cobot("lab", {"F1": CobotFloor(forked)})
+    kinds = {name: each.kind for name, each in read.document.floors["F1"].places.items()}
+    assert kinds == {
+        "n0": PlaceKind.ROOM,
+        "n1": PlaceKind.WAYPOINT,
+        "n2": PlaceKind.ROOM,
+        "n3": PlaceKind.WAYPOINT,
+    }
+    assert read.notes == ["floor 'F1': ways end at n0, n2, which count as rooms"]
+
+
+def test_doors_of_several_floors_are_told_apart() -> None:
+    floors = {"F1": CobotFloor(HALL), "F2": CobotFloor(HALL)}
+    read = import_cobot("lab", floors, {"lift": {"F1": 0, "F2": 0}})
+    doors = [list(each.doors) for each in read.document.floors.values()]
+    assert doors == [["F1 door_1_2"], ["F2 door_1_2"]]

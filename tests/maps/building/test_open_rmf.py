@@ -11,6 +11,13 @@ from mend.maps.building.building_file import check_building
 from mend.maps.building.open_rmf import import_open_rmf
 from mend.maps.building.tidying import Imported
 
+FRONTS = [
+    f"floor '{floor}': doors are called like others, or like an elevator: "
+    f"'front' is called '{floor} front' here"
+    for floor in ("L1", "L2")
+]
+"""What is told of the plan below, whose doors are called alike on both levels."""
+
 
 def lane(a: int, b: int, **properties: object) -> list:
     kinds = {bool: 4, int: 2, float: 3, str: 1}
@@ -60,7 +67,7 @@ def test_pixels_become_metres_with_y_upwards() -> None:
     hotel, notes = imported(plan(L1=level(), L2=level(elevation=4)))
     room = hotel.floors["L1"].places["4102"]
     assert (room.x, room.y, room.kind) == (5.0, -10.0, PlaceKind.ROOM)
-    assert notes == []
+    assert notes == FRONTS
 
 
 def test_floors_lie_above_each_other_by_their_fiducials() -> None:
@@ -74,8 +81,8 @@ def test_floors_lie_above_each_other_by_their_fiducials() -> None:
 def test_a_lift_joins_floors_and_a_door_is_on_the_lane_through_it() -> None:
     hotel, _ = imported(plan(L1=level(), L2=turned()))
     assert hotel.document.elevators["Lift1"].stops == {"L1": "Lift1", "L2": "Lift1"}
-    assert [each.doors for each in hotel.crossings] == [["front"], ["front"]]
-    assert hotel.floors["L1"].doors["front"].opens is DoorOpening.PEOPLE
+    assert [each.doors for each in hotel.crossings] == [["L1 front"], ["L2 front"]]
+    assert hotel.floors["L1"].doors["L1 front"].opens is DoorOpening.PEOPLE
 
 
 def test_lanes_of_other_graphs_are_left_out_where_some_are_chosen() -> None:
@@ -149,7 +156,7 @@ def test_a_lift_is_where_its_cabin_is_drawn_if_no_vertex_says_so() -> None:
     along_y, notes = imported(with_a_lift(math.pi / 2.0))
     assert along_y.document.elevators["Lift1"].stops == {"L1": "Lift1", "L2": "Lift1"}
     assert along_y.floors["L1"].places["Lift1"].kind is PlaceKind.ELEVATOR
-    assert notes == []
+    assert notes == FRONTS
 
 
 def test_a_vertex_beside_the_cabin_is_not_in_it() -> None:
@@ -161,3 +168,48 @@ def test_a_vertex_beside_the_cabin_is_not_in_it() -> None:
 def test_what_a_vertex_says_of_its_lift_counts_before_where_it_is() -> None:
     said, _ = imported(with_a_lift(math.pi / 2.0, lift_cabin=[1, "Lift1"]))
     assert said.document.elevators["Lift1"].stops == {"L1": "Lift1", "L2": "Lift1"}
+
+
+def test_a_plan_without_lanes_is_refused() -> None:
+    with pytest.raises(WrongInputError, match="no lanes are in the plan"):
+        import_open_rmf(plan(L1=level(lanes=[])))
+
+
+def test_a_measured_edge_to_a_vertex_that_is_not_there_is_refused() -> None:
+    measured = [[0, 77, {"distance": [3, 5.0]}]]
+    with pytest.raises(WrongInputError, match="measurement 0 of level 'L1' joins 0 and 77"):
+        import_open_rmf(plan(L1=level(measurements=measured)))
+
+
+def test_what_begins_and_ends_in_one_place_is_left_out() -> None:
+    pointless = level(lanes=[lane(0, 1), lane(0, 0)], doors=[[3, 3, {"name": [1, "slit"]}]])
+    pointless["walls"] = []
+    hotel, notes = imported(plan(L1=pointless, L2=level(elevation=4)))
+    assert len(hotel.floors["L1"].lanes) == 1
+    assert hotel.floors["L1"].doors == {}
+    assert [each for each in notes if "left out" in each] == [
+        "floor 'L1': 1 lane (4102 to itself) is left out",
+        "floor 'L1': 1 door (slit) is without width, and left out",
+    ]
+
+
+def test_doors_of_one_level_that_are_called_alike_are_all_kept() -> None:
+    hung = [[3, 4, {"name": [1, each]}] for each in ("null", "null_2", "null")]
+    hotel, _ = imported(plan(L1=level(doors=hung), L2=level(elevation=4)))
+    assert list(hotel.floors["L1"].doors) == ["null", "null_2", "null_3"]
+
+
+def test_lifts_that_are_called_alike_here_are_both_kept() -> None:
+    content = plan(L1=level(), L2=level(elevation=4))
+    for each in content["levels"].values():
+        each["vertices"] = [
+            [100.0, 200.0, 0, "room"],
+            [200.0, 200.0, 0, "", {"lift_cabin": [1, "a/b"]}],
+            [100.0, 300.0, 0, "", {"lift_cabin": [1, "a-b"]}],
+        ]
+        each |= {"lanes": [lane(0, 1), lane(0, 2)], "walls": [], "doors": []}
+    content["lifts"] = {"a/b": {}, "a-b": {}}
+    hotel, _ = imported(content)
+    assert {name: set(each.stops.values()) for name, each in hotel.document.elevators.items()} == {
+        "a-b": {"a-b"}, "a-b_2": {"a-b_2"},
+    }  # fmt: skip

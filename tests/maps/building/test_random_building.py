@@ -48,3 +48,10 @@ def test_a_picture_of_a_floor_names_its_rooms_and_not_its_waypoints() -> None:
     assert all(f">{200 + number}</text>" in picture for number in range(1, 7))
     assert ">w0_0<" not in picture
     assert picture.count("<line") >= len(building.floors["F2"].walls)
+
+
+def test_no_door_is_called_like_another_one_or_like_an_elevator() -> None:
+    for seed in range(6):
+        made = random_building(seed, 4, 50)
+        doors = [name.casefold() for floor in made.floors.values() for name in floor.doors]
+        assert len({*doors, *made.elevators}) == len(doors) + len(made.elevators)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mend.maps.building.building import Building, BuildingDocument, FloorPlace, PlaceKind
+from mend.maps.building.building import Building, BuildingDocument, Caller, FloorPlace, PlaceKind
 from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of
 from mend.maps.building.clearance import distances_m
 from mend.maps.building.crossing import crossed_by
@@ -322,3 +322,22 @@ def test_who_stands_before_what_is_barred_goes_back_from_there() -> None:
     assert list(ways.path(here, to, {lane: "F1/b"})) == [(10.0, 0.0)]
     there = BasePose(9.8, 0.0, 0.0)
     assert list(ways.path(there, to, {lane: "F1/a"})) == [(10.0, 0.0)]
+
+
+def test_an_elevator_that_others_wait_for_is_left_where_another_one_is_quicker() -> None:
+    document = random_building(1, 3, 60)
+    lifts = {
+        name: each.model_copy(update={"called_by": Caller.ROBOTS})
+        for name, each in document.elevators.items()
+    }
+    building = Building(document.model_copy(update={"elevators": lifts}))
+    ways = FloorWays(building, Frame(), 1.0, 0.3)
+    floors = building.floors
+    here = pose_of(Frame(), floors["F1"].places["101"], floors["F1"].height)
+    to = pose_of(Frame(), floors["F3"].places["301"], floors["F3"].height)
+    (ride,) = ways.rides(here, to)
+    assert ways.rides(here, to, waits_s={ride.elevator: 0.5}) == [ride]
+    (instead,) = ways.rides(here, to, waits_s={ride.elevator: 1000.0})
+    assert instead.elevator != ride.elevator
+    everywhere = dict.fromkeys(lifts, 1000.0)
+    assert ways.rides(here, to, waits_s=everywhere) == [ride]

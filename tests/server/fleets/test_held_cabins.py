@@ -33,13 +33,22 @@ class Office:
     def __post_init__(self) -> None:
         self.dispatcher = Dispatcher(self.building, fleet_of("F1/101", "F1/102"))
         self.closed = ClosedWays(self.dispatcher, ())
-        self.cabins = HeldCabins(
+        self.cabins = self._cabins({})
+
+    def _cabins(self, kept: dict[str, str]) -> HeldCabins:
+        return HeldCabins(
             self.dispatcher,
             self.closed,
             self.at.get,
             lambda *_: ["F1/102", "F1/103", "F1/104"],
             lambda robot: robot not in self.busy,
+            kept,
         )
+
+    def begin_anew(self) -> None:
+        """The service was stopped: no robot has said yet where it is."""
+        self.at.clear()
+        self.cabins = self._cabins(dict(self.cabins.held))
 
     def in_cabin(self, elevator: str, floor: str = "F1") -> Point:
         x, y = stop_of(self.building, elevator, floor)
@@ -76,12 +85,12 @@ def test_who_stays_closes_it_until_it_is_out(office: Office) -> None:
     assert office.found(STAYS_S - 1.0) == []
     assert office.found(STAYS_S) == [("lift1", Finding.ELEVATOR_DEAD)]
     assert office.closes == {"lift1"}
-    assert office.cabins.holders == ["r0"]
+    assert office.cabins.held == {"r0": "lift1"}
     assert office.found(STAYS_S + 1.0) == [], "it is told once"
     office.at["r0"] = (0.0, 0.0, 0.0)
     assert office.found(STAYS_S + 2.0) == [("lift1", Finding.OPEN)]
     assert office.closes == set()
-    assert office.cabins.holders == []
+    assert office.cabins.held == {}
 
 
 def test_others_ride_by_the_other_elevator_or_are_told_why_nobody_does(office: Office) -> None:
@@ -121,6 +130,20 @@ def test_it_stays_closed_while_the_robot_is_sent_out_and_where_that_is_forgotten
     assert office.closes == {"lift1"}
     later_s = max(office.dispatcher.closed_until_s().values()) + 1.0
     assert office.found(later_s) == [("lift1", Finding.ELEVATOR_DEAD)]
+
+
+def test_after_a_restart_it_is_closed_until_the_robot_is_seen_outside(office: Office) -> None:
+    office.at["r0"] = office.in_cabin("lift1")
+    office.found(0.0)
+    office.found(STAYS_S)
+    office.begin_anew()
+    assert office.found(STAYS_S + 1.0) == [], "where it is nobody knows yet"
+    office.at["r0"] = office.in_cabin("lift1")
+    assert office.found(STAYS_S + 2.0) == []
+    assert office.closes == {"lift1"}
+    office.at["r0"] = (0.0, 0.0, 0.0)
+    assert office.found(STAYS_S + 3.0) == [("lift1", Finding.OPEN)]
+    assert office.closes == set()
 
 
 def test_what_others_say_of_it_stays_as_they_say(office: Office) -> None:

@@ -46,6 +46,17 @@ def yard(*, ring: bool = True) -> CartBench:
     return CartBench(ways=FloorWays(building, Frame(), 1.0, 0.3))
 
 
+def corridor(middle_m: float) -> CartBench:
+    """A cart where a lane begins that has a place so far off, and no way round."""
+    places = {name: {"x": x, "y": 0.0} for name, x in (("begin", 0.0), ("end", 6.0))}
+    places["middle"] = {"x": middle_m, "y": 0.0}
+    lanes = [{"between": each} for each in (("begin", "middle"), ("middle", "end"))]
+    floor = {"places": places, "lanes": lanes}
+    document = {"building": "corridor", "floors": {"F": floor}}
+    building = Building(BuildingDocument.model_validate_json(json.dumps(document)))
+    return CartBench(ways=FloorWays(building, Frame(), 1.0, 0.3))
+
+
 def go(bench: CartBench, to: Location = END, execution: str = "e1") -> None:
     parameters = {"place": "far"}
     bench.send(
@@ -82,6 +93,17 @@ def test_where_no_other_way_leads_it_asks() -> None:
     assert issue.issue == "blocked"
     assert issue.detection is not None
     assert issue.detection.between == BETWEEN
+    assert not bench.of(WayFound)
+
+
+@pytest.mark.parametrize("middle_m", [2.0, 2.4, 2.6, 2.8, 2.9, 3.0, 3.2, 3.5])
+def test_what_stands_about_where_lanes_meet_is_no_more_passed_than_elsewhere(
+    middle_m: float,
+) -> None:
+    bench = corridor(middle_m)
+    bar(bench)
+    go(bench)
+    assert bench.run_until(IssueDetected).issue == "blocked"
     assert not bench.of(WayFound)
 
 
