@@ -33,6 +33,8 @@ _ONE_KIND = {
     "uuid_type": "a UUID",
     "uuid_parsing": "a UUID",
 }
+_MEMBER = re.compile(r"<\w+\.\w+: ('[^']*')>")
+"""As a member of an enum is shown, and its value in it."""
 _SUBJECT = re.compile(r"^\w+ should ")
 
 
@@ -60,7 +62,8 @@ def what_it_must_be(mistake: ErrorDetails) -> str:
             return _at_most(context["max_length"], kind, context)
         case "union_tag_invalid":
             key = context["discriminator"].strip("'")
-            return f"has '{context['tag']}' as '{key}', not one of {context['expected_tags']}"
+            known = _MEMBER.sub(r"\1", context["expected_tags"])
+            return f"has '{context['tag']}' as '{key}', not one of {known}"
     told = mistake["msg"]
     if _SUBJECT.match(told):
         return _SUBJECT.sub("must ", told)

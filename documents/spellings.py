@@ -4,6 +4,7 @@ NODE = r"^/(\d+(/\d+)*)?$"
 """The path of a node in its tree."""
 
 NAME = r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$"
+WORDS = r"^[^\s/\x00-\x1f]+( [^\s/\x00-\x1f]+)*$"
 SEEN_CHARACTERS = r"^[^\x00-\x1f\x7f]+$"
 SEEN_CHARACTERS_OR_NONE = r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*$"
 CAMERA = r"^[a-z][a-z0-9_]{0,31}$"
@@ -19,6 +20,7 @@ SPELLINGS = {
     CLOCK: "must be a time of the day, as 09:30",
     NODE: "must be the path of a node: '/', or '/0/2/1' by the numbers of the children",
     NAME: "must be a name: a letter, then at most 63 letters, digits, '_' or '-'",
+    WORDS: "must be words without '/' or line breaks, with one space between each two",
     SEEN_CHARACTERS: "must have only characters that can be seen",
     SEEN_CHARACTERS_OR_NONE: "must have only characters that can be seen",
     CAMERA: "must be a lower-case letter, then at most 31 lower-case letters, digits or '_'",

@@ -7,7 +7,16 @@ from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
 
-_BY_ENDING = {"s": "seconds", "m": "metres", "rad": "radians", "n": "newtons", "kg": "kilograms"}
+_BY_ENDING = {
+    "m_s": "metres per second",
+    "rad_s": "radians per second",
+    "s": "seconds",
+    "m": "metres",
+    "rad": "radians",
+    "n": "newtons",
+    "kg": "kilograms",
+}
+"""The longer ending first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +48,7 @@ def model_at(model: type[BaseModel], location: Sequence[int | str]) -> type[Base
 def unit_of_name(location: Sequence[int | str]) -> str | None:
     """What the number at a location is in, by the end of its name, as in `timeout_s`."""
     name = next((each for each in reversed(location) if isinstance(each, str)), "")
-    return _BY_ENDING.get(name.rpartition("_")[2]) if "_" in name else None
+    return next((unit for end, unit in _BY_ENDING.items() if name.endswith(f"_{end}")), None)
 
 
 def _at(model: type[BaseModel], location: Sequence[int | str]) -> list[Any]:

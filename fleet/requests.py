@@ -53,6 +53,11 @@ class LegAction(StrEnum):
     TAKE = "take"
     BRING_BACK = "bring_back"
 
+    @property
+    def words(self) -> str:
+        """As it stands in a sentence."""
+        return self.replace("_", " ")
+
 
 class RequestStatus(StrEnum):
     """How far a request has come.
@@ -70,6 +75,11 @@ class RequestStatus(StrEnum):
     REFUSED = "refused"
     CANCELLED = "cancelled"
     FAILED = "failed"
+
+    @property
+    def words(self) -> str:
+        """As it stands in a sentence."""
+        return self.replace("_", " ")
 
 
 _OVER = (RequestStatus.CANCELLED, RequestStatus.FAILED)

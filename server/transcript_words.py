@@ -15,7 +15,7 @@ DEEDS: dict[Act, str] = {
     Act.HAND_OVER: "hands {object} over",
     Act.MOVE: "moves {object}",
     Act.BLOCK: "stands in the robot's way",
-    Act.RELEASE: "clears the robot's way",
+    Act.RELEASE: "helps the robot go on",
     Act.COVER: "covers the head camera",
     Act.UNCOVER: "clears the head camera's view",
     Act.PUT_IN: "puts {object} into the robot's basket",

@@ -71,7 +71,9 @@ class BookingDesk:
             self._state.building.find(place)
         booking = self._state.open_booking(name)
         if booking.status not in (RequestStatus.BOOKED, RequestStatus.WAITING):
-            raise ConflictError(f"the request '{name}' is {booking.status}: too late to change it")
+            raise ConflictError(
+                f"the request '{name}' is {booking.status.words}: too late to change it"
+            )
         without = self._state.fleet.fork()
         without.apply(Cancelled(name), without.now_s)
         without.forget_closed()

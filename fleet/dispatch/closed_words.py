@@ -1,4 +1,4 @@
-"""Which ways count as closed, for who is told that robots get there only while doors are open."""
+"""Which ways are closed, for who is told that robots get there only while doors are open."""
 
 from collections.abc import Iterator, Mapping
 from math import inf
@@ -13,12 +13,28 @@ _MOST = 5
 def with_closed(
     told: str, building: Building, closed_until_s: Mapping[frozenset[str], float]
 ) -> str:
-    """The reason with what was found closed, where doors are a part of it."""
-    if WHILE_OPEN not in told or not closed_until_s:
+    """The reason with what was found closed, and which doors have hours, where they are a part."""
+    if WHILE_OPEN not in told:
         return told
-    closed = list(dict.fromkeys(_words(building, closed_until_s)))
-    more = [] if len(closed) <= _MOST else [f"{len(closed) - _MOST} more"]
-    return f"{told}; found closed: {', '.join([*closed[:_MOST], *more])}"
+    closed = _some(_words(building, closed_until_s))
+    hours = _some(_hours(building))
+    told += f"; found closed: {closed}" if closed else ""
+    return told + (f"; doors with hours: {hours}" if hours else "")
+
+
+def _some(words: Iterator[str]) -> str:
+    each = list(dict.fromkeys(words))
+    more = [] if len(each) <= _MOST else [f"{len(each) - _MOST} more"]
+    return ", ".join([*each[:_MOST], *more])
+
+
+def _hours(building: Building) -> Iterator[str]:
+    """Each door that is open only at times, with when (s)."""
+    for name, floor in building.document.floors.items():
+        for door, each in floor.doors.items():
+            if each.open_s:
+                spans = " and ".join(f"{begin:g} to {end:g} s" for begin, end in each.open_s)
+                yield f"{door} on {name} (open {spans})"
 
 
 def _words(building: Building, closed_until_s: Mapping[frozenset[str], float]) -> Iterator[str]:

@@ -96,7 +96,7 @@ class DispatchState:
         if booking is None:
             raise NotFoundError(f"there is no request '{name}'")
         if not booking.open:
-            raise ConflictError(f"the request '{name}' is {booking.status}")
+            raise ConflictError(f"the request '{name}' is {booking.status.words}")
         return booking
 
     def occurrences(self, name: str) -> list[Booking]:

@@ -26,7 +26,7 @@ class GivingUp:
     def failed(self, leg: Leg, end: LegEnd, at: str) -> None:
         """A leg that is still wanted was not done: try again later, or give up."""
         booking, item = self._state.bookings[leg.booking], self._state.fleet.items[leg.booking]
-        what = f"{leg.robot} could not {leg.action} '{leg.booking}' at {leg.place}"
+        what = f"{leg.robot} could not {leg.action.words} '{leg.booking}' at {leg.place}"
         said = f"{what}: {end.reason or end.outcome}"
         booking.reason, waits = said, item.state is ItemState.WAITING
         now_s = self._state.fleet.now_s

@@ -5,10 +5,12 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from mend.fleet.scheduling.problem import Problem
-from mend.fleet.scheduling.schedule import Task
+from mend.fleet.scheduling.schedule import Action, Task
 
-WHILE_OPEN = "only while doors on its way are open"
+WHILE_OPEN = "only while the doors and elevators on its way are open"
 """Of a robot that gets somewhere through doors, or by elevators, that are closed at times."""
+
+_OF_VISITS = {Action.PICK: "begin", Action.DROP: "end"}
 
 
 class ConstraintKind(StrEnum):
@@ -84,4 +86,6 @@ def sentence(problem: Problem, constraint: Constraint) -> str:
 def _task_words(problem: Problem, task: Task | None) -> str:
     if task is None:
         return ""
-    return f"{task.action} {problem.items[task.item].name} at {problem.places[task.place]}"
+    item = problem.items[task.item]
+    action = _OF_VISITS.get(task.action, task.action) if item.is_visit else task.action
+    return f"{action} {item.name} at {problem.places[task.place]}"

@@ -103,7 +103,8 @@ def _item(problem: Problem, number: int, time_s: Matrix) -> str | None:
         if closest is None or conflict.excess_s < closest[0]:
             closest = conflict.excess_s, _conflict_words(problem, conflict)
     assert closest is not None, "somebody is able"
-    return f"{who} cannot be delivered even if a robot does nothing else: {closest[1]}"
+    done = "done" if item.is_visit else "delivered"
+    return f"{who} cannot be {done} even if a robot does nothing else: {closest[1]}"
 
 
 def _carriers(problem: Problem, number: int, able: list[int]) -> Iterator[tuple[int, int]]:

@@ -52,6 +52,11 @@ class Item:
     aboard: int | None = None
     direct: bool = False
 
+    @property
+    def is_visit(self) -> bool:
+        """Whether it is brought from nowhere to nowhere: a robot is wanted at one place."""
+        return self.aboard is None and self.pickup.place == self.delivery.place
+
 
 @dataclass(frozen=True, slots=True)
 class Robot:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from mend.documents.spellings import WORDS
 from mend.documents.strict_model import StrictModel
 from mend.errors import NotFoundError
 from mend.maps.building.crossing import crossed_by
@@ -24,9 +25,7 @@ Metres = Annotated[float, Field(ge=-FARTHEST_M, le=FARTHEST_M, allow_inf_nan=Fal
 Length = Annotated[float, Field(gt=0.0, le=FARTHEST_M, allow_inf_nan=False)]
 Seconds = Annotated[float, Field(ge=0.0, le=1e9, allow_inf_nan=False)]
 Speed = Annotated[float, Field(gt=0.0, le=10.0, allow_inf_nan=False)]
-Name = Annotated[
-    str, Field(min_length=1, max_length=64, pattern=r"^[^\s/\x00-\x1f]+( [^\s/\x00-\x1f]+)*$")
-]
+Name = Annotated[str, Field(min_length=1, max_length=64, pattern=WORDS)]
 """Any words without a slash, which stands between a floor and a place."""
 
 RIDE_S = 15.0

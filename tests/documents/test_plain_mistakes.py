@@ -1,6 +1,7 @@
 import re
 from collections.abc import Iterator
-from typing import Any
+from enum import StrEnum
+from typing import Annotated, Any, Literal
 
 import pytest
 from pydantic import BaseModel, Field, ValidationError
@@ -10,6 +11,11 @@ from mend.documents.spellings import SPELLINGS
 from mend.robots.link.messages import robot_message
 from mend.server.access.principals_file import Principals
 from mend.server.app import described_app
+
+
+class Drink(StrEnum):
+    TEA = "tea"
+    COFFEE = "coffee"
 
 
 class Everything(BaseModel):
@@ -66,3 +72,22 @@ def test_every_pattern_that_people_and_robots_are_held_to_has_words() -> None:
 
 def test_no_words_show_a_pattern() -> None:
     assert not any(re.search(r"[\\^$\[\]]", words) for words in SPELLINGS.values())
+
+
+class Tea(BaseModel):
+    kind: Literal[Drink.TEA]
+
+
+class Coffee(BaseModel):
+    kind: Literal[Drink.COFFEE]
+
+
+class Order(BaseModel):
+    drink: Annotated[Tea | Coffee, Field(discriminator="kind")]
+
+
+def test_what_kinds_there_are_is_said_as_it_is_written() -> None:
+    with pytest.raises(ValidationError) as error:
+        Order.model_validate({"drink": {"kind": "milk"}})
+    told = what_it_must_be(error.value.errors()[0])
+    assert told == "has 'milk' as 'kind', not one of 'tea', 'coffee'"

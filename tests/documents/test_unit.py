@@ -56,6 +56,7 @@ def test_a_measure_beyond_its_limit_is_told_with_its_unit_and_line() -> None:
     [
         (("person", "delay_s"), "seconds"),
         (("knob_m", 2), "metres"),
+        (("speed_m_s",), "metres per second"),
         (("max_attempts",), None),
         (("s",), None),
         ((), None),

@@ -26,3 +26,15 @@ def test_nothing_is_added_where_nothing_is_closed_or_that_is_not_why() -> None:
 def test_of_many_ways_some_are_told() -> None:
     closed = {frozenset((f"F1/a{n}", f"F1/b{n}")): 300.0 for n in range(7)}
     assert with_closed(TOLD, BUILDING, closed).endswith(", 2 more")
+
+
+def test_doors_with_hours_are_named() -> None:
+    document = BUILDING.document
+    name, floor = next((n, each) for n, each in document.floors.items() if each.doors)
+    door, plain = next(iter(floor.doors.items()))
+    timed = plain.model_copy(update={"open_s": ((0.0, 300.0), (900.0, 1200.0))})
+    other = floor.model_copy(update={"doors": {**floor.doors, door: timed}})
+    floors = {**document.floors, name: other}
+    told = with_closed(TOLD, Building(document.model_copy(update={"floors": floors})), {})
+    hours = f"{door} on {name} (open 0 to 300 s and 900 to 1200 s)"
+    assert told == f"{TOLD}; doors with hours: {hours}"

@@ -161,7 +161,7 @@ def test_what_went_back_has_its_reason_and_what_is_known() -> None:
     make_leg(dispatcher, 15.0, 25.0, NOBODY)
     make_leg(dispatcher, 40.0, 25.0, LegEnd(outcome=LegOutcome.DONE, reason=TAKEN_OUT))
     reason = dispatcher.view("tea").reason
-    assert reason == f"r0 could not hand_over 'tea' at f/d: nobody came; {TAKEN_OUT}"
+    assert reason == f"r0 could not hand over 'tea' at f/d: nobody came; {TAKEN_OUT}"
 
 
 def test_visit_is_one_leg() -> None:

@@ -102,7 +102,10 @@ def test_door_that_opens_too_late() -> None:
     )
     soon = Item("soon", 1.0, Visit(0), Visit(2, Window(0.0, 110.0)))
     (told,) = sentences(replace(corridor(items=(soon,)), travel=doors))
-    assert "can get there to drop soon at c only while doors on its way are open" in told
+    assert (
+        "can get there to drop soon at c only while the doors and elevators on its way are open"
+        in told
+    )
     assert "10 s more" in told
     later = replace(soon, delivery=Visit(2, Window(0.0, 120.0)))
     assert sentences(replace(corridor(items=(later,)), travel=doors)) == []
@@ -143,3 +146,10 @@ def test_published_instances_are_judged() -> None:
     items = (replace(feasible.items[0], load=1e6), *feasible.items[1:])
     (told,) = infeasibilities(replace(feasible, items=items))
     assert told.item == 0
+
+
+def test_of_a_visit_nothing_is_picked_or_delivered() -> None:
+    late = Item("early", 1.0, Visit(2, Window(0.0, 5.0)), Visit(2, Window(0.0, 5.0)))
+    (told,) = sentences(corridor(items=(late,)))
+    assert told.startswith("item 'early' cannot be done even if a robot does nothing else")
+    assert "to begin early at c" in told
