@@ -6,6 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from mend.documents.document import DocumentError, LinedMapping, read_document, read_text
+from mend.documents.kinds_of_files import not_the_kind
 from mend.documents.problem import InvalidFileError, Problem
 from mend.documents.strict_model import StrictModel
 from mend.documents.validation import find_line, show_kind, validate_part
@@ -51,6 +52,8 @@ def read_request_text(text: str, *, source: str = "requests") -> RequestsDocumen
     if not isinstance(content, LinedMapping):
         message = f"a request file is a mapping with 'requests', but this is {show_kind(content)}"
         raise RequestFileError(source, [*problems, Problem(1, None, message)])
+    if other := not_the_kind(content, "a request file"):
+        raise RequestFileError(source, [other])
     document, wrong = validate_part(RequestsDocument, content)
     problems += wrong
     if document is not None:

@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from mend.documents.document import DocumentError, LinedMapping, read_document, read_text
+from mend.documents.kinds_of_files import not_the_kind
 from mend.documents.problem import InvalidFileError, Problem
 from mend.documents.validation import find_line, show_kind, validate_part
 from mend.tasks.library import SCENES
@@ -53,6 +54,8 @@ def read_scene_text(text: str, *, source: str = "scene") -> ReadScene:
     if not isinstance(document, LinedMapping):
         message = f"a scene file is a mapping, but this is {show_kind(document)}"
         raise InvalidFileError(source, [*problems, Problem(1, None, message)])
+    if other := not_the_kind(document, "a scene"):
+        raise InvalidFileError(source, [other])
     problems += expand_rows(document)
     scene, mistakes = validate_part(Scene, document)
     problems += mistakes

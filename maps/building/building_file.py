@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from mend.documents.document import DocumentError, LinedMapping, read_document, read_text
+from mend.documents.kinds_of_files import not_the_kind
 from mend.documents.problem import InvalidFileError, Problem, list_names
 from mend.documents.validation import find_line, show_kind, validate_part
 from mend.maps.building.building import Building, BuildingDocument, Floor
@@ -41,6 +42,8 @@ def read_building_text(text: str, *, source: str = "building") -> Building:
     if not isinstance(content, LinedMapping):
         message = f"a building file is a mapping, but this is {show_kind(content)}"
         raise BuildingFileError(source, [*problems, Problem(1, None, message)])
+    if other := not_the_kind(content, "a building"):
+        raise BuildingFileError(source, [other])
     document, wrong = validate_part(BuildingDocument, content)
     problems += wrong
     if document is not None:
