@@ -12,7 +12,7 @@ from uuid import UUID
 import pytest
 from dispatch_office import asked, dispatcher_for, office, visit
 
-from mend.errors import ConflictError, NotFoundError
+from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.requests import RequestStatus
 from mend.robots.base.behaviors.behavior import MEETS_M
@@ -607,6 +607,17 @@ async def test_a_way_that_somebody_found_blocked_keeps_robots_off_it() -> None:
         await work.fleet.operators.found(WayReport(finding="open", between=["b", "c"]), None)
         await work.fleet.submit(visit(place="d", latest_s=200.0), None)
         assert (await work.runs.nth(1)).parameters == {"place": "d", "near_m": MEETS_M}
+
+
+async def test_a_way_is_not_closed_until_what_is_over() -> None:
+    async with working("a") as work:
+        work.site.shown_s = 105.0
+        past = WayReport(finding="blocked", between=["b", "c"], until_s=1.0)
+        with pytest.raises(WrongInputError, match=r"must be after 105 s, .* but it is 1 s"):
+            await work.fleet.operators.found(past, None)
+        assert not list(work.fleet.closed_ways.now())
+        await work.fleet.operators.found(past.model_copy(update={"until_s": 105.5}), None)
+        assert len(list(work.fleet.closed_ways.now())) == 1
 
 
 async def test_a_fault_within_ends_the_leg_and_not_the_fleet(
