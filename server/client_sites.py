@@ -49,9 +49,13 @@ class SiteCalls(Wire):
     async def change_request(
         self, name: str, request: "AnyRequest", site: UUID | None = None
     ) -> RequestView:
-        """Ask for something else instead; refused, or once a robot has set out, all stays."""
+        """Ask for something else instead; refused, or once a robot has set out, all stays.
+
+        One occurrence of what recurs keeps its time where `request` was given none.
+        """
         path = _at_site(f"/api/requests/{name}", site)
-        sent = await self._request("PUT", path, json=request.model_dump(mode="json"))
+        given = request.model_dump(mode="json", exclude_unset=True)
+        sent = await self._request("PUT", path, json={"kind": request.kind, **given})
         return RequestView.model_validate_json(sent.content)
 
     async def understand_request(

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mend.fleet.asking.number_words import in_digits
 
@@ -17,9 +17,13 @@ _LONGEST_WORDS = 6
 
 @dataclass(frozen=True, slots=True)
 class By:
-    """By a time of the day: minutes since midnight."""
+    """By a time of the day: minutes since midnight; of today, unless that is over, or `tomorrow`.
+
+    Where it is known how late it is, `tomorrow` says so also of what is over today.
+    """
 
     minute: int
+    tomorrow: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,14 +38,18 @@ Deadline = By | Within
 
 @dataclass(frozen=True, slots=True)
 class TwoTimes:
-    """A time that is there twice a day, where nobody has said how late it is."""
+    """A time that is there twice a day, where nothing tells which: nobody has said how late it is,
+    or it is to be `tomorrow`."""
 
     minute: int
+    tomorrow: bool = False
 
     @property
     def question(self) -> str:
         """Asks which of them."""
-        return f"Do you mean {clock(self.minute)} or {clock(self.minute + _HALF_DAY_MIN)}?"
+        day = " tomorrow" if self.tomorrow else ""
+        late = clock(self.minute + _HALF_DAY_MIN)
+        return f"Do you mean {clock(self.minute)}{day} or {late}{day}?"
 
 
 def clock(minute: int) -> str:
@@ -52,14 +60,16 @@ def clock(minute: int) -> str:
 def deadline_words(deadline: Deadline) -> str:
     """How it is read back, so that it is meant again."""
     if isinstance(deadline, By):
-        return f"by {clock(deadline.minute)}"
+        return f"by {clock(deadline.minute)}{' tomorrow' if deadline.tomorrow else ''}"
     return f"within {deadline.minutes} {'minute' if deadline.minutes == 1 else 'minutes'}"
 
 
 def minutes_left(deadline: Deadline, now_min: int) -> int:
-    """How long that is from a time of the day (minutes since midnight); a day at most."""
+    """How long that is from a time of the day (minutes since midnight); less than two days."""
     if isinstance(deadline, Within):
         return deadline.minutes
+    if deadline.tomorrow:
+        return deadline.minute + DAY_MIN - now_min
     return (deadline.minute - now_min - 1) % DAY_MIN + 1
 
 
@@ -90,7 +100,7 @@ def _deadline(words: Sequence[str], now_min: int | None) -> Deadline | TwoTimes 
     rest = [each.replace(".", "") if each in ("a.m.", "p.m.") else each for each in rest]
     if first in _WITHIN:
         return _within(rest)
-    return _by(rest, now_min) if first in _BY else None
+    return _by_a_day(rest, now_min) if first in _BY else None
 
 
 def _within(words: Sequence[str]) -> Within | None:
@@ -102,6 +112,17 @@ def _within(words: Sequence[str]) -> Within | None:
     factor = 60 if told[1] in _HOUR else 1 if told[1] in _MINUTE else 0
     minutes = int(told[0]) * factor
     return Within(minutes) if 0 < minutes <= DAY_MIN else None
+
+
+def _by_a_day(words: Sequence[str], now_min: int | None) -> By | TwoTimes | None:
+    """A time of today or tomorrow: whoever says "tomorrow" does not mean the next such time."""
+    if words[-1:] == ["tomorrow"]:
+        found = _by(words[:-1], None)
+        return None if found is None else replace(found, tomorrow=True)
+    found = _by(words, now_min)
+    if isinstance(found, By) and now_min is not None:
+        return By(found.minute, tomorrow=found.minute <= now_min)
+    return found
 
 
 def _by(words: Sequence[str], now_min: int | None) -> By | TwoTimes | None:

@@ -57,7 +57,8 @@ class BookingDesk:
     def change(self, name: str, request: AnyRequest) -> Answer:
         """Book other words for what nobody has set out for yet; refused, it stays as it was.
 
-        Raises `NotFoundError`, and `ConflictError` where it is too late or it recurs.
+        One occurrence of a series keeps its time, unless another is given. Raises `NotFoundError`,
+        and `ConflictError` where it is too late or it recurs.
         """
         if name in self._state.series or request.recurrence is not None:
             raise ConflictError(
@@ -74,6 +75,8 @@ class BookingDesk:
             raise ConflictError(
                 f"the request '{name}' is {booking.status.words}: too late to change it"
             )
+        if name.partition("/")[0] in self._state.series:
+            request = _at_its_time(request, booking.request)
         without = self._state.fleet.fork()
         without.apply(Cancelled(name), without.now_s)
         without.forget_closed()
@@ -165,3 +168,17 @@ class BookingDesk:
             for series in self._state.series.values()
             if not series.over
         ]
+
+
+def _at_its_time(request: AnyRequest, before: AnyRequest) -> AnyRequest:
+    """As it is asked for now, at the time of before where none is given."""
+    given = request.model_fields_set
+    if "earliest_s" in given:
+        return request
+    latest_s = request.latest_s if "latest_s" in given else before.latest_s
+    if latest_s is not None and latest_s <= before.earliest_s:
+        raise WrongInputError(
+            f"latest_s must be after the {before.earliest_s:g} s from which it is wanted, "
+            f"unless another earliest_s is given, but it is {latest_s:g} s"
+        )
+    return request.model_copy(update={"earliest_s": before.earliest_s, "latest_s": latest_s})

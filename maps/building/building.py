@@ -3,7 +3,7 @@
 Lengths are metres, in one frame for all floors (x right, y up), times seconds.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from mend.documents.near_names import names_near
 from mend.documents.spellings import WORDS
 from mend.documents.strict_model import StrictModel
 from mend.errors import NotFoundError
@@ -163,8 +164,15 @@ class Building:
         if len(found) == 1:
             return found[0]
         if not found:
-            raise NotFoundError(f"the building '{self.name}' has no place '{name}'")
+            raise NotFoundError(
+                f"the building '{self.name}' has no place '{name}'; there is "
+                f"{names_near(name, self._names_like(name))}"
+            )
         raise NotFoundError(f"'{name}' is on several floors: say {' or '.join(found)}")
+
+    def _names_like(self, name: str) -> Iterable[str]:
+        """All places, as fully as `name` has been given."""
+        return self._places if "/" in name else {each.split("/", 1)[1] for each in self._places}
 
     def floor_at(self, height_m: float) -> str | None:
         """The floor at a height; None where there is none."""

@@ -99,7 +99,10 @@ async def change_request(
     caller: WithCaller,
     site: AtSite = None,
 ) -> RequestView:
-    """Ask for something else instead, as long as no robot has set out; refused, all stays."""
+    """Ask for something else instead, as long as no robot has set out; refused, all stays.
+
+    One occurrence of what recurs keeps its time where none is given.
+    """
     return RequestView.of(*await services.fleets.change(site, name, request, caller.author))
 
 

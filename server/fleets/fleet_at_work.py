@@ -86,7 +86,7 @@ class FleetAtWork:
             site,
             dispatcher,
             places,
-            FleetNews(site.id, dispatcher, utc_now),
+            FleetNews(site.id, dispatcher, utc_now, lambda: self.shown_s),
             journal,
             lambda: tuple(self._errands.going.values()),
             lambda: self._held_cabins.held,
@@ -241,8 +241,8 @@ class FleetAtWork:
 
     @property
     def shown_s(self) -> float:
-        """The site's clock for who watches it: robots tell of it more often than plans need it."""
-        return max(self.now_s, self._site.shown_s)
+        """The site's clock for who watches it."""
+        return self._book.shown_s
 
     def _let_time_pass(self) -> None:
         """Have the site's clock run to when there is something to be done, if there ever is."""

@@ -53,6 +53,11 @@ class FleetBook:
         """The site's clock, as far as it is known: it never goes back."""
         return max(self.dispatcher.now_s, self._site.world.time.latest_s)
 
+    @property
+    def shown_s(self) -> float:
+        """The site's clock for who watches it: robots tell of it more often than plans need it."""
+        return max(self.now_s, self._site.shown_s)
+
     def at(self, robot: str) -> str:
         """The place that a robot is nearest to, as far as is known."""
         where = self._site.whereabouts(robot)

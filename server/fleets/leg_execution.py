@@ -3,6 +3,7 @@
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from uuid import UUID
 
@@ -31,6 +32,8 @@ log = logging.getLogger(__name__)
 
 TRIES_AGAIN_S = 1.0
 """What could not be begun is tried again after so long (wall time)."""
+RESTS_WITHIN_S = 5.0
+"""So long a robot whose leg was broken off may take to say that it stands (wall time)."""
 _LONGEST = 500
 
 
@@ -63,6 +66,7 @@ class LegExecution:
         self._run: UUID | None = None
         self._broken_off = False
         self._waiting: asyncio.Future[None] | None = None
+        self._stands = asyncio.Event()
         self._ready: Callable[[], bool] = lambda: True
 
     @property
@@ -77,6 +81,8 @@ class LegExecution:
 
     def look_again(self) -> None:
         """Time has passed, or others have done something: it may be its turn."""
+        if self._is_still:
+            self._stands.set()
         waiting = self._waiting
         if waiting is not None and not waiting.done() and (self._broken_off or self._ready()):
             waiting.set_result(None)
@@ -151,7 +157,23 @@ class LegExecution:
             # The service stops, and goes on with it at its next start.
             await asyncio.Event().wait()
         self._run = None
-        return self._end_of(view)
+        end = self._end_of(view)
+        return await self._withdrawn() if end.outcome is LegOutcome.WITHDRAWN else end
+
+    async def _withdrawn(self) -> LegEnd:
+        """Broken off: what its robot has driven it says when it stands, which is soon."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(RESTS_WITHIN_S):
+                while not self._is_still:
+                    self._stands.clear()
+                    await self._stands.wait()
+        return LegEnd(outcome=LegOutcome.WITHDRAWN, at=self._at())
+
+    @property
+    def _is_still(self) -> bool:
+        """Whether nothing more is to be heard of its robot, as it rests or is not there."""
+        robot = self._leg.robot
+        return self._site.rests(robot) or not self._site.is_connected(robot)
 
     async def _is_begun(self, run: UUID, request: RunRequest, tree: TaskTreeDefinition) -> bool:
         try:

@@ -6,6 +6,7 @@ from functools import partial
 
 from mend.errors import ConflictError
 from mend.fleet.dispatch.leg import Leg, LegEnd, LegOutcome
+from mend.robots.link.messages import Driven
 from mend.server.fleets.fleet_book import FleetBook
 from mend.server.fleets.leg_execution import LegExecution, LegTurn
 from mend.server.fleets.runs import Runs
@@ -95,6 +96,16 @@ class LegsUnderWay:
         if why is not None:
             # Others fetch what it has, and do what it was to do.
             self._dispatcher.robot_failed(robot, self._book.met_at(robot), why, now_s)
-        odometer, before = self._site.odometer(robot), self._set_out.pop(robot, None)
-        driven = None if odometer is None else odometer.since(before)
+        driven = self._driven(robot, end.outcome)
         self._book.note(self._book.news.ended(leg, end, driven))
+
+    def _driven(self, robot: str, outcome: LegOutcome) -> Driven | None:
+        """What it drove for a leg that ends so; None where it has not said that yet.
+
+        Whose leg fails has said so itself, if it is there; whose leg is broken off was driving,
+        and says so once it stands.
+        """
+        odometer, before = self._site.odometer(robot), self._set_out.pop(robot, None)
+        failed_there = outcome is LegOutcome.FAILED and self._site.is_connected(robot)
+        known = outcome is LegOutcome.DONE or failed_there or self._site.rests(robot)
+        return odometer.since(before) if odometer is not None and known else None

@@ -1,7 +1,7 @@
 """What operators say to a fleet: of ways, and of robots."""
 
-from mend.documents.problem import list_names
-from mend.errors import ConflictError, NotFoundError
+from mend.documents.near_names import names_near
+from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.fleet.dispatch.leg import Finding, Found
 from mend.server.access.principal import RESERVED
 from mend.server.fleets.errands import Errands
@@ -18,23 +18,34 @@ class Operators:
         self._book, self._errands, self._legs = book, errands, legs
 
     async def found(self, way: WayReport, author: ev.Author | None) -> None:
-        """A way was found blocked, or open. Raises as `Dispatcher.found`."""
+        """A way was found blocked, or open.
+
+        Raises as `Dispatcher.found`, and `WrongInputError` where it is to last until what is over.
+        """
         a, b = way.between or self._stops_of(way.elevator or "")
         what = f"the way between {a} and {b}" if way.elevator is None else way.elevator
         found = Found(finding=Finding(way.finding), between=(a, b), until_s=way.until_s)
         async with self._book.told():
+            self._require_to_come(way)
             self._book.dispatcher.found(found, self._book.now_s)
             named = author is not None and author.principal not in RESERVED
             self._book.closed_ways.note(found, author.principal if author and named else None)
             finding = way.finding.replace("_", " ")
             self._note(f"said of {what}: {finding}", author)
 
+    def _require_to_come(self, way: WayReport) -> None:
+        if way.until_s is not None and way.until_s <= self._book.shown_s:
+            raise WrongInputError(
+                f"until_s must be after {self._book.shown_s:g} s, which is now by the clock of the "
+                f"site, but it is {way.until_s:g} s"
+            )
+
     def _stops_of(self, elevator: str) -> list[str]:
         """Two places where it stops. Raises `NotFoundError`."""
         elevators = self._book.dispatcher.building.document.elevators
         if elevator not in elevators:
             raise NotFoundError(
-                f"there is no elevator '{elevator}'; there are {list_names(list(elevators))}"
+                f"there is no elevator '{elevator}'; there is {names_near(elevator, elevators)}"
             )
         return [f"{floor}/{at}" for floor, at in elevators[elevator].stops.items()][:2]
 

@@ -120,6 +120,9 @@ def _between_runs(runs: Sequence[tuple[LegStage, Sequence[ev.Event]]]) -> TimeUs
     """What a robot does while no run has it: it is there and waits, or nothing is known."""
     if not runs:
         return TimeUse.UNKNOWN
+    if any(isinstance(each, ev.RunAborted) for _, events in runs for each in events):
+        # What a robot does whose run was broken off is no run's to journal.
+        return TimeUse.UNKNOWN
     stage, events = runs[0]
     came = stage is LegStage.GO and any(isinstance(each, ev.RunFinished) for each in events)
     return TimeUse.WAITING if came else TimeUse.OTHER

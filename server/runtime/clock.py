@@ -21,6 +21,10 @@ class RunClock(Protocol):
         """A robot has (re)joined: its clock says `robot_time` now."""
         ...
 
+    def catch_up(self) -> None:
+        """Be as far as its world is, whose robots may have driven since one last reported."""
+        ...
+
     def to_robot(self, time: float) -> float:
         """A time of this clock as the robot's clock says it."""
         ...
@@ -61,11 +65,20 @@ class WorldTime:
 class SimulatedClock:
     """Follows a simulated world's clock, which may start again when the world is rebuilt."""
 
-    def __init__(self, start: float = 0.0, world: WorldTime | None = None) -> None:
-        """`world`: the time of the world that it follows, where others follow it too."""
+    def __init__(
+        self,
+        start: float = 0.0,
+        world: WorldTime | None = None,
+        shown_s: Callable[[], float] | None = None,
+    ) -> None:
+        """`world`: the time of the world that it follows, where others follow it too; `shown_s`:
+        how far that is by all that robots say, also by what is only for display.
+        """
         self._now = start
         self._offset = start
         self._world = world
+        self._shown_s = shown_s
+        self._aligned = False
 
     def now(self) -> float:
         return self._now
@@ -79,6 +92,12 @@ class SimulatedClock:
         if self._world is not None:
             robot_time = self._world.heard(robot_time)
         self._offset = self._now - robot_time
+        self._aligned = True
+
+    def catch_up(self) -> None:
+        # Before any robot has joined it is not known what this clock said at a time of the world's.
+        if self._aligned and self._shown_s is not None:
+            self._now = max(self._now, self._shown_s() + self._offset)
 
     def to_robot(self, time: float) -> float:
         return time - self._offset
@@ -110,6 +129,9 @@ class WallClock:
 
     def align(self, robot_time: float) -> None:
         """Nothing to do, as for `observe`."""
+
+    def catch_up(self) -> None:
+        """Nothing to do: real time goes on by itself."""
 
     def to_robot(self, time: float) -> float:
         return time

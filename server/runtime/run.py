@@ -420,6 +420,8 @@ class Run:
         state = self._context.state
         if state.status.ended:
             raise ConflictError(f"the run has ended ({state.status})")
+        # Its robots have gone on since they last reported.
+        self._context.clock.catch_up()
         closings = [self._dialogues.abort(each) for each in state.open_dialogues]
         aborted = ev.RunAborted(**self._context.stamp(), reason=reason, author=author)
         await self._context.commit([*closings, aborted])

@@ -33,7 +33,7 @@ class BorrowedRobots:
 
     def clock(self, start_s: float) -> RunClock:
         """The world's, by which the run is so far."""
-        return SimulatedClock(start_s, self._site.world.time)
+        return SimulatedClock(start_s, self._site.world.time, lambda: self._site.shown_s)
 
     def lend(self) -> None:
         """The run has its robots from now on."""

@@ -129,6 +129,9 @@ class RunMaker:
     def finished(self, time: float) -> ev.RunFinished:
         return ev.RunFinished(missing=[], **self._at(time))
 
+    def aborted(self, time: float) -> ev.RunAborted:
+        return ev.RunAborted(reason="", **self._at(time))
+
     def lost(self, time: float) -> ev.RobotLost:
         return ev.RobotLost(robot=self._robot, reason="gone", **self._at(time))
 

@@ -208,3 +208,25 @@ async def test_a_robot_that_is_not_there_is_said_to_be_none(
     await open_office_with_fleet(service)
     page = await open_page("/robots/nobody/ask")
     await expect(page.get_by_text("No robot called nobody takes requests here.")).to_be_visible()
+
+
+async def test_a_robot_that_is_out_of_service_says_so_and_another_one_comes(
+    service: Service, open_page: OpenPage
+) -> None:
+    site = await open_office_with_fleet(service, robots=2)
+    fleet = await service.fleets.fleet(site)
+    first, other = fleet.dispatcher.fleet.robots
+    await fleet.operators.take_out(first, "its wheel squeaks", None)
+    page = await open_page(f"/robots/{first}/ask")
+    out = page.get_by_role("heading", name="I am out of service, but you may ask here")
+    await expect(out).to_be_visible(timeout=LONG_MS)
+    await expect(page.get_by_text("What may I do for you?")).to_be_hidden()
+    await press(page, "Come to a room")
+    await press(page, "F1 106")
+    await press(page, "Yes, that is right")
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("is expected to be done with it")
+    await fleet.operators.take_out(other, "its wheel squeaks, too", None)
+    page = await open_page(f"/robots/{first}/ask")
+    await expect(page.get_by_text("no other robot works now")).to_be_visible(timeout=LONG_MS)
+    await expect(page.get_by_role("button", name="Come to a room")).to_be_hidden()

@@ -152,6 +152,33 @@ async def test_what_is_cancelled_while_a_robot_is_on_its_way_is_broken_off(tmp_p
 
 
 @pytest.mark.slow
+async def test_a_leg_that_is_broken_off_tells_what_its_robot_drove_until_then(
+    tmp_path: Path,
+) -> None:
+    async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
+        site = await open_office_with_fleet(service, 4.0, robots=2)
+        fleet = await service.fleets.fleet(site)
+        await service.fleets.submit(site, GoToRoom(name="far", place="106"), None)
+        while fleet.shown_s < 6.0:  # noqa: ASYNC110 - nobody tells of it
+            await asyncio.sleep(0)
+        (leg,) = fleet.dispatcher.legs_under_way()
+        await fleet.operators.take_out(leg.robot, "it is stuck", None)
+        await until_over(service, {"far"})
+        events = [read_event(each.seq, each.text) for each in await records_of(service)]
+    (told,) = [each for each in events if isinstance(each, ev.FleetTold)]
+    assert told.at_s >= 6.0
+    history = FleetHistory.of(site, events, Span())
+    of_leg, ended = next(each for each in history.ended if each[1].robot == leg.robot)
+    took_s = ended.at_s - of_leg.begun.at_s
+    assert ended.outcome == "withdrawn"
+    assert took_s >= 6.0
+    assert ended.driven_m is not None
+    assert 1.0 < ended.driven_m < 2.0 * took_s
+    split = time_split(of_leg)
+    assert split[TimeUse.NAVIGATION] + split[TimeUse.BLOCKED] > 0.8 * took_s
+
+
+@pytest.mark.slow
 async def test_requests_are_made_followed_changed_and_cancelled_over_rest(tmp_path: Path) -> None:
     async with (
         open_service(settings(tmp_path)) as service,

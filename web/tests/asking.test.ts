@@ -45,7 +45,10 @@ describe("a moment of the building's clock", () => {
     [90, 1, "in less than a minute, at 14:20"],
     [340, "max", "in about 4 minutes"],
     [100 + 3 * 3600, 1, "at 17:20"],
-    [100 + 10 * 3600, 1, "on Tuesday at 00:20"],
+    [100 + 10 * 3600, 1, "tomorrow at 00:20"],
+    [100 + 24 * 3600, 1, "tomorrow at 14:20"],
+    [100 + 3 * 24 * 3600, 1, "on Thursday at 14:20"],
+    [100 + 7 * 24 * 3600, 1, "on Monday 8 June at 14:20"],
   ] as const)("%d s at speed %s is said by people's", (moment, speed, said) => {
     expect(when(moment, { now: 100, speed }, today)).toBe(said);
   });

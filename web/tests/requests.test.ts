@@ -33,12 +33,20 @@ describe("words of requests", () => {
 
 describe("a filled-in form", () => {
   it("says what is missing", () => {
-    expect(missing(NO_WISH)).toBe("Say what is to be brought.");
-    expect(missing({ ...NO_WISH, what: "mail" })).toBe("Say from where, and to where.");
-    expect(missing({ ...MAIL, destination: "F1/101" })).toBe("It is there already: choose another place.");
-    expect(missing({ ...MAIL, within: "soon" })).toContain("in how many minutes");
-    expect(missing({ ...NO_WISH, kind: "deliver_message", message: "x" })).toBe("Say where.");
-    expect(missing(MAIL)).toBe("");
+    expect(missing(NO_WISH, 100)).toBe("Say what is to be brought.");
+    expect(missing({ ...NO_WISH, what: "mail" }, 100)).toBe("Say from where, and to where.");
+    expect(missing({ ...MAIL, destination: "F1/101" }, 100)).toBe("It is there already: choose another place.");
+    expect(missing({ ...MAIL, within: "soon" }, 100)).toContain("in how many minutes");
+    expect(missing({ ...NO_WISH, kind: "deliver_message", message: "x" }, 100)).toBe("Say where.");
+    expect(missing(MAIL, 100)).toBe("");
+  });
+
+  it("says in its own words how many minutes may be given", () => {
+    for (const within of ["1e9", "0", "-5", "Infinity", "1000001"]) {
+      expect(missing({ ...MAIL, within }, 100)).toContain("with a number up to 1,000,000, or leave that empty");
+    }
+    expect(missing({ ...MAIL, within: "1000000" }, 100)).toBe("");
+    expect(missing({ ...MAIL, within: "11" }, 1e8 - 600)).toContain("up to 10,");
   });
 
   it("is a request by the building's clock", () => {

@@ -54,9 +54,14 @@ def asked_back(words: str, here: str | None = HERE, now_min: int | None = NOW_MI
         ("escort Ms Lee from the lobby to 305", "escort Ms Lee from F1 lobby to F3 305"),
         ("show me the way to 305", "escort whoever asked from F1 101 to F3 305"),
         ("come to 203 by three o'clock", "come to F2 203 by 15:00"),
-        ("come to 203 by 3 am", "come to F2 203 by 03:00"),
+        ("come to 203 by 3 am", "come to F2 203 by 03:00 tomorrow"),
+        ("come to 203 by 14:10", "come to F2 203 by 14:10 tomorrow"),
+        ("come to 203 by 14:20", "come to F2 203 by 14:20 tomorrow"),
+        ("come to 203 by midnight", "come to F2 203 by 00:00 tomorrow"),
+        ("come to 203 by 15:30 tomorrow", "come to F2 203 by 15:30 tomorrow"),
+        ("come to 203 by half past three pm tomorrow", "come to F2 203 by 15:30 tomorrow"),
         ("come to 203 before 3:30", "come to F2 203 by 15:30"),
-        ("come to 203 by two fifteen", "come to F2 203 by 02:15"),
+        ("come to 203 by two fifteen", "come to F2 203 by 02:15 tomorrow"),
         ("come to 203 by half past three", "come to F2 203 by 15:30"),
         ("come to 203 before 15:30", "come to F2 203 by 15:30"),
         ("come to 203 in ten minutes", "come to F2 203 within 10 minutes"),
@@ -131,7 +136,7 @@ def test_places_that_sound_alike_are_told_apart_by_their_whole_names() -> None:
 WORDS = (
     "the", "mail", "from", "to", "in", "at", "that", "here", "me", "by", "before", "15:30", "ten",
     "minutes", "please", "Ms", "Lee", "101", "305", '"', "is", "right", "kitchen", "know", "this,",
-    "o'clock", "robot", "“tea”", "it's", ".", "and", "F1", "room", "hello", "a.m.",
+    "o'clock", "tomorrow", "robot", "“tea”", "it's", ".", "and", "F1", "room", "hello", "a.m.",
 )  # fmt: skip
 free = st.lists(st.sampled_from(WORDS), min_size=1, max_size=7).map(" ".join)
 VERBS = ("bring", "bring me", "come to", "go to", "tell", "let", "escort", "show", "fetch", "visit")
@@ -174,7 +179,8 @@ requests = st.one_of(
     .filter(lambda each: each[0] != each[1])
     .map(lambda e: Escort(name="asked", origin=e[0], destination=e[1], person=e[2])),
 )
-deadlines = st.none() | st.integers(0, DAY_MIN - 1).map(By) | st.integers(1, DAY_MIN).map(Within)
+times = st.builds(By, st.integers(0, DAY_MIN - 1), st.booleans())
+deadlines = st.none() | times | st.integers(1, DAY_MIN).map(Within)
 
 
 @given(requests, deadlines)
@@ -207,6 +213,22 @@ def test_a_time_of_the_day_is_the_next_one(minute: int, now_min: int) -> None:
     left = minutes_left(By(minute), now_min)
     assert 0 < left <= DAY_MIN
     assert (now_min + left) % DAY_MIN == minute
+
+
+@given(st.integers(0, DAY_MIN - 1), st.integers(0, DAY_MIN - 1))
+def test_what_is_read_back_names_the_day_that_is_meant(minute: int, now_min: int) -> None:
+    said = f"come to 203 by {minute // 60:02d}:{minute % 60:02d}"
+    found = understood(said, PLACES, now_min=now_min)
+    assert isinstance(found, Understood)
+    assert found.deadline is not None
+    of_tomorrow = now_min + minutes_left(found.deadline, now_min) >= DAY_MIN
+    assert (" tomorrow." in found.read_back) == of_tomorrow
+
+
+def test_who_says_tomorrow_does_not_mean_today() -> None:
+    assert minutes_left(By(15 * 60, tomorrow=True), NOW_MIN) == DAY_MIN + 40
+    question = asked_back("come to 203 by three o'clock tomorrow")
+    assert question == "Do you mean 03:00 tomorrow or 15:00 tomorrow?"
 
 
 def test_what_is_too_long_for_a_request_is_asked_back() -> None:

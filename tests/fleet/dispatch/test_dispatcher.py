@@ -105,6 +105,41 @@ def test_changed_request_is_planned_anew_or_stays_as_it_was() -> None:
     assert view.status is RequestStatus.BOOKED
 
 
+def _second_round() -> Dispatcher:
+    """One of what recurs each hour, wanted from 3700 s on until 4300 s."""
+    dispatcher = dispatcher_for("a", policy=Policy(horizon_s=8000.0))
+    times = {"earliest_s": 100.0, "latest_s": 700.0}
+    dispatcher.submit(visit("round", recurrence=Recurrence(every_s=3600.0), **times), 0.0)
+    return dispatcher
+
+
+@pytest.mark.parametrize(
+    ("given", "times"),
+    [
+        ({}, (3700.0, 4300.0)),
+        ({"latest_s": 5000.0}, (3700.0, 5000.0)),
+        ({"latest_s": None}, (3700.0, None)),
+        ({"earliest_s": 4500.0}, (4500.0, None)),
+        ({"earliest_s": 0.0}, (0.0, None)),
+    ],
+)
+def test_changed_occurrence_keeps_its_time_unless_another_is_given(
+    given: dict[str, float | None], times: tuple[float, float | None]
+) -> None:
+    dispatcher = _second_round()
+    assert dispatcher.change("round/2", visit("round", place="e", **given), 1.0).booked
+    changed = dispatcher.view("round/2").request
+    assert changed.places == ("e",)
+    assert (changed.earliest_s, changed.latest_s) == times
+
+
+def test_changed_occurrence_is_not_wanted_by_before_its_time() -> None:
+    dispatcher = _second_round()
+    with pytest.raises(WrongInputError, match=r"after the 3700 s from which .* but it is 500 s"):
+        dispatcher.change("round/2", visit("round", latest_s=500.0), 1.0)
+    assert dispatcher.view("round/2").request.latest_s == 4300.0
+
+
 def test_request_under_way_is_not_changed() -> None:
     dispatcher = dispatcher_for("a")
     dispatcher.submit(asked(), 0.0)

@@ -48,8 +48,10 @@ def test_a_name_that_one_floor_has_is_enough() -> None:
     assert two.find("F2/lab") == "F2/lab"
     with pytest.raises(NotFoundError, match="F1/lab or F2/lab"):
         two.find("lab")
-    with pytest.raises(NotFoundError, match="has no place 'roof'"):
+    with pytest.raises(NotFoundError, match="has no place 'roof'; there is 'hall'"):
         two.find("roof")
+    with pytest.raises(NotFoundError, match="has no place 'F2/Lob'; there is 'F2/lab'"):
+        two.find("F2/Lob")
 
 
 def test_places_are_found_by_their_kind() -> None:

@@ -12,7 +12,7 @@ from uuid import UUID
 import pytest
 from dispatch_office import asked, dispatcher_for, office, visit
 
-from mend.errors import ConflictError, NotFoundError
+from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.requests import RequestStatus
 from mend.robots.base.behaviors.behavior import MEETS_M
@@ -54,6 +54,7 @@ class FakeSite:
         self.changed: Callable[[], None] = lambda: None
         self.busy: set[str] = set()
         self.gone: set[str] = set()
+        self.rolls_on: set[str] = set()
         self.standing: dict[str, tuple[float, float, float]] = {}
         self.runs: dict[str, UUID] = {}
         self.bases: dict[str, SeenBase] = {}
@@ -95,7 +96,7 @@ class FakeSite:
         return self.batteries.get(robot)
 
     def rests(self, robot: str) -> bool:
-        return robot not in self.busy | self.gone
+        return robot not in self.busy | self.gone | self.rolls_on
 
     def run_of(self, robot: str) -> UUID | None:
         return self.runs.get(robot)
@@ -332,6 +333,66 @@ async def test_the_journal_tells_what_was_driven_for_a_leg_unless_the_robot_bega
         assert (ended.driven_m, ended.barred_s) == told
 
 
+async def _taken_out_while_it_drives(work: Work) -> None:
+    """At 40 s, by what it shows; since it set out, at 100 m, it has not said what it drove."""
+    work.site.odometers["r0"] = Odometer("b1", Driven(way_m=100.0, barred_s=5.0))
+    await work.fleet.submit(asked(), None)
+    await work.runs.nth(1)
+    work.site.rolls_on.add("r0")
+    work.site.shown_s = 40.0
+    await work.fleet.operators.take_out("r0", "it is stuck", None)
+
+
+async def _ended(journal: SqliteJournal) -> ev.LegEnded | None:
+    legs = [each for each in await journal.read(0, 1000) if isinstance(each, ev.LegEnded)]
+    return legs[0] if legs else None
+
+
+async def _first_ended(work: Work) -> ev.LegEnded:
+    async with asyncio.timeout(PATIENCE_S):
+        while (ended := await _ended(work.journal)) is None:  # noqa: ASYNC110 - nobody tells of it
+            await asyncio.sleep(0)
+    return ended
+
+
+async def test_a_leg_that_is_broken_off_counts_what_its_robot_says_once_it_stands() -> None:
+    async with working("a") as work:
+        await _taken_out_while_it_drives(work)
+        assert await _ended(work.journal) is None, "its robot has not said how far it came"
+        work.site.odometers["r0"] = Odometer("b1", Driven(way_m=108.0, barred_s=6.0))
+        work.site.rolls_on.clear()
+        work.site.changed()
+        ended = await _first_ended(work)
+        assert (ended.outcome, ended.driven_m, ended.barred_s) == ("withdrawn", 8.0, 1.0)
+
+
+async def test_what_a_robot_drove_is_not_known_that_never_says_that_it_stands(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(leg_execution, "RESTS_WITHIN_S", 0.0)
+    async with working("a") as work:
+        await _taken_out_while_it_drives(work)
+        ended = await _first_ended(work)
+        assert (ended.outcome, ended.driven_m, ended.barred_s) == ("withdrawn", None, None)
+
+
+async def test_what_a_robot_drove_is_not_known_that_is_gone() -> None:
+    async with working("a") as work:
+        work.site.odometers["r0"] = Odometer("b1", Driven(way_m=100.0, barred_s=5.0))
+        await work.fleet.submit(asked(), None)
+        going = await work.runs.nth(1)
+        work.site.gone.add("r0")
+        going.ended.set_result(("failed", False))
+        assert (await _first_ended(work)).driven_m is None
+
+
+async def test_what_an_operator_tells_is_dated_by_when_it_is_told() -> None:
+    async with working("a") as work:
+        await _taken_out_while_it_drives(work)
+        (told,) = [e for e in await work.journal.read(0, 1000) if isinstance(e, ev.FleetTold)]
+        assert told.at_s == 40.0
+
+
 async def test_after_a_restart_the_same_run_goes_on() -> None:
     async with working("a") as work:
         await work.fleet.submit(asked(), None)
@@ -546,6 +607,17 @@ async def test_a_way_that_somebody_found_blocked_keeps_robots_off_it() -> None:
         await work.fleet.operators.found(WayReport(finding="open", between=["b", "c"]), None)
         await work.fleet.submit(visit(place="d", latest_s=200.0), None)
         assert (await work.runs.nth(1)).parameters == {"place": "d", "near_m": MEETS_M}
+
+
+async def test_a_way_is_not_closed_until_what_is_over() -> None:
+    async with working("a") as work:
+        work.site.shown_s = 105.0
+        past = WayReport(finding="blocked", between=["b", "c"], until_s=1.0)
+        with pytest.raises(WrongInputError, match=r"must be after 105 s, .* but it is 1 s"):
+            await work.fleet.operators.found(past, None)
+        assert not list(work.fleet.closed_ways.now())
+        await work.fleet.operators.found(past.model_copy(update={"until_s": 105.5}), None)
+        assert len(list(work.fleet.closed_ways.now())) == 1
 
 
 async def test_a_fault_within_ends_the_leg_and_not_the_fleet(

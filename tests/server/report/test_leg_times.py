@@ -167,3 +167,19 @@ def test_every_second_of_a_leg_is_in_one_class(
     assert all(a.end_s == b.begin_s for a, b in itertools.pairwise(parts))
     if parts:
         assert (parts[0].begin_s, parts[-1].end_s) == (begins_s, ended.at_s)
+
+
+def test_a_leg_that_was_broken_off_went_by_with_what_its_robot_was_about_until_then() -> None:
+    run = COLLECT.run()
+    events: list[ev.Event] = [
+        run.started(),
+        run.set_out(0.0),
+        run.step(0.5, Phase.TRAVEL),
+        run.aborted(20.0),
+    ]
+    ended = COLLECT.ended(120.5, "withdrawn")
+    assert spent(LegRecord(COLLECT.begun(100.0), ended, {LegStage.DO: events})) == {
+        TimeUse.OTHER: 0.5,
+        TimeUse.NAVIGATION: 19.5,
+        TimeUse.UNKNOWN: 0.5,
+    }

@@ -50,3 +50,14 @@ async def test_promised_help_is_looked_for_whatever_the_robots_clock_says(
         ) as service:
             view, _ = await service.run_to_end(answers=["yes"])
     assert view.status is RunStatus.FINISHED
+
+
+def test_it_catches_up_with_what_robots_show_of_their_world_once_one_has_joined() -> None:
+    clock = SimulatedClock(start=3.0, shown_s=lambda: 140.0)
+    clock.catch_up()
+    assert clock.now() == 3.0, "nobody has said where the world's clock was when it began"
+    clock.align(100.0)
+    clock.catch_up()
+    assert clock.now() == 43.0
+    clock.observe(120.0)
+    assert clock.now() == 43.0

@@ -17,13 +17,28 @@ export function when(moment: number, { now, speed }: SiteClock, today: Date): st
   const left = Math.max(0, (moment - now) / speed);
   const then = new Date(today.getTime() + 1000 * left);
   const at = t("at {time}", { time: timeOf(then) });
-  if (left < SOON_S) return `${within(left)}, ${at}`;
-  return then.toDateString() === today.toDateString()
-    ? at
-    : t("on {weekday} {at}", { weekday: WEEKDAY.format(then), at });
+  const there = onDay(then, at, today);
+  return left < SOON_S ? `${within(left)}, ${there}` : there;
 }
 
+/** With the day, unless that is today: the weekday alone while there is one of it in between. */
+function onDay(then: Date, at: string, today: Date): string {
+  const days = daysBetween(today, then);
+  if (days === 0) return at;
+  if (days === 1) return t("tomorrow {at}", { at });
+  return t("on {weekday} {at}", { weekday: (days < DAYS_OF_WEEK ? WEEKDAY : DATE).format(then), at });
+}
+
+/** Days of the calendar, whatever the hour, also where one of them has 23 hours. */
+function daysBetween(one: Date, other: Date): number {
+  const [first, last] = [one, other].map((each) => Date.UTC(each.getFullYear(), each.getMonth(), each.getDate()));
+  return ((last ?? 0) - (first ?? 0)) / DAY_MS;
+}
+
+const DAY_MS = 86_400_000;
+const DAYS_OF_WEEK = 7;
 const WEEKDAY = new Intl.DateTimeFormat(locale, { weekday: "long" });
+const DATE = new Intl.DateTimeFormat(locale, { weekday: "long", day: "numeric", month: "long" });
 
 /** As on a clock of 24 hours. */
 export function timeOf(moment: Date): string {

@@ -1,4 +1,5 @@
 // What somebody fills in, and the request that it is.
+import { locale } from "../words/language";
 import { t } from "../words/words";
 
 export type Kind = "transport" | "deliver_message" | "go_to_room" | "escort";
@@ -26,13 +27,19 @@ export const NO_WISH: Wish = {
   within: "",
 };
 
+const LAST_S = 1e8;
+const MOST_MINUTES = 1_000_000;
 const UNLIKE_CHARS = 4;
 const LONGEST_NAME = 40;
 
-/** What is missing, in a sentence; empty where nothing is. */
-export function missing(wish: Wish): string {
-  const minutes = Number(wish.within);
-  if (wish.within !== "" && !(minutes > 0)) return t("Say in how many minutes it has to be done, or leave that empty.");
+/** What is missing at `now` of the building's clock, in a sentence; empty where nothing is. */
+export function missing(wish: Wish, now: number): string {
+  const most = mostMinutes(now);
+  if (wish.within !== "" && !(Number(wish.within) > 0 && Number(wish.within) <= most)) {
+    return t("Say in how many minutes it has to be done, with a number up to {most}, or leave that empty.", {
+      most: new Intl.NumberFormat(locale).format(most),
+    });
+  }
   switch (wish.kind) {
     case "transport":
       if (wish.what.trim() === "") return t("Say what is to be brought.");
@@ -46,6 +53,11 @@ export function missing(wish: Wish): string {
       if (wish.person.trim() === "") return t("Say who is to be shown the way.");
       return endsMissing(wish);
   }
+}
+
+/** No clock of a building goes on beyond `LAST_S`; a round number while that is far off. */
+function mostMinutes(now: number): number {
+  return Math.min(MOST_MINUTES, Math.floor((LAST_S - now) / 60));
 }
 
 function endsMissing({ origin, destination }: Wish): string {

@@ -35,7 +35,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
   };
   const send = async () => {
     const wanted = withPlaces(wish, fleet.places);
-    const wrong = missing(wanted.wish) || wanted.mistake;
+    const wrong = missing(wanted.wish, fleet.now_s) || wanted.mistake;
     setMistake(wrong);
     if (wrong === "") await ask(requestOf(wanted.wish, fleet.now_s, newName()));
   };

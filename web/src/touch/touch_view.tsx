@@ -16,6 +16,7 @@ import { may, whyNot } from "../state/access";
 import { soundOn } from "../state/preferences";
 import type { AskedRobotView, SiteView } from "../wire/types";
 import { useHasVoice, useSaidAloud } from "./said_aloud";
+import { type Service, serviceOf } from "./service";
 import { StepForm } from "./step_form";
 import { type Asked, nextStep, readBackOf, wishOf } from "./steps";
 import { useIdle } from "./use_idle";
@@ -85,10 +86,12 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
     setConfirmed({ request: requestOf(wish, fleet.now_s, newName()), readBack: readBackOf(wish) });
   };
   const isStart = asked === null && confirmed === null;
+  const service = serviceOf(robot.robot, fleet);
   return (
     <>
-      {isStart && <Start robot={robot} choose={(kind) => setAsked({ kind, answers: [] })} />}
-      {isStart && (
+      {isStart && service === "alone" && <h2>{t("I am out of service, and no other robot works now. Please try again later.")}</h2>}
+      {isStart && service !== "alone" && <Start robot={robot} service={service} choose={(kind) => setAsked({ kind, answers: [] })} />}
+      {isStart && service !== "alone" && (
         <InWords
           site={site.id}
           robot={robot.robot}
@@ -118,11 +121,21 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
   );
 }
 
-function Start({ robot, choose }: { robot: AskedRobotView; choose: (kind: Kind) => void }) {
+interface StartProps {
+  robot: AskedRobotView;
+  service: Service;
+  choose: (kind: Kind) => void;
+}
+
+function Start({ robot, service, choose }: StartProps) {
   const offered = DEEDS.filter(([kind]) => robot.kinds.includes(kind) && (kind !== "escort" || robot.here !== null));
   return (
     <>
-      <h2>{t("What may I do for you?")}</h2>
+      <h2>
+        {service === "in"
+          ? t("What may I do for you?")
+          : t("I am out of service, but you may ask here: another robot will come. What may it do for you?")}
+      </h2>
       <div class="touch-deeds">
         {offered.map(([kind, name]) => (
           <button key={kind} class="button touch-button" type="button" onClick={() => choose(kind)}>
