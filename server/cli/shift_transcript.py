@@ -30,9 +30,9 @@ class ShiftTranscript:
         if request not in self.ended:
             self.open.add(request)
 
-    def refused(self, request: str, reason: str) -> None:
-        """A request cannot be met."""
-        self.say(f"refused: {reason}")
+    def refused(self, request: str, reason: str, at_s: float) -> None:
+        """A request cannot be met, it is found at a moment of the site's clock."""
+        self.say(f"refused: {reason}", at_s)
         self.open.discard(request)
         self.ended[request] = RequestStatus.REFUSED
 
@@ -70,8 +70,9 @@ class ShiftTranscript:
         self.say(f"of {len(self.ended)} requests: {', '.join(told)}")
         return not counts[RequestStatus.REFUSED] and not counts[RequestStatus.FAILED]
 
-    def say(self, text: str) -> None:
-        """Print a line, with the site's clock before it."""
+    def say(self, text: str, at_s: float = 0.0) -> None:
+        """Print a line, with the site's clock before it: `at_s`, or of the last line if later."""
+        self._now_s = max(self._now_s, at_s)
         typer.echo(f"{self._now_s:8.1f}  {text}")
 
     # --- Within -------------------------------------------------------------------------------
