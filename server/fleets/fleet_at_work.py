@@ -86,7 +86,7 @@ class FleetAtWork:
             site,
             dispatcher,
             places,
-            FleetNews(site.id, dispatcher, utc_now),
+            FleetNews(site.id, dispatcher, utc_now, lambda: self.now_s),
             journal,
             lambda: tuple(self._errands.going.values()),
             lambda: self._held_cabins.held,

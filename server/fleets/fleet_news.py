@@ -15,8 +15,16 @@ from mend.server.journal import events as ev
 class FleetNews:
     """Makes the events of a fleet, each once."""
 
-    def __init__(self, site: UUID, dispatcher: Dispatcher, utc_now: Callable[[], datetime]) -> None:
+    def __init__(
+        self,
+        site: UUID,
+        dispatcher: Dispatcher,
+        utc_now: Callable[[], datetime],
+        now_s: Callable[[], float],
+    ) -> None:
+        """`now_s`: the site's clock, which the dispatcher only knows as it was told last."""
         self._site = site
+        self._now_s = now_s
         self._dispatcher = dispatcher
         self._utc_now = utc_now
         self._told = {each.name: _state(each) for each in dispatcher.views()}
@@ -52,7 +60,7 @@ class FleetNews:
         return ev.FleetTold(
             wall_time=self._utc_now(),
             site=self._site,
-            at_s=self._dispatcher.now_s,
+            at_s=self._now_s(),
             told=told,
             author=author,
             finder=finder,
@@ -97,7 +105,7 @@ class FleetNews:
         return ev.ErrandBegun(
             wall_time=self._utc_now(),
             site=self._site,
-            at_s=self._dispatcher.now_s,
+            at_s=self._now_s(),
             robot=errand.robot,
             place=errand.place,
             start=start,
@@ -110,7 +118,7 @@ class FleetNews:
         return ev.ErrandEnded(
             wall_time=self._utc_now(),
             site=self._site,
-            at_s=self._dispatcher.now_s,
+            at_s=self._now_s(),
             robot=errand.robot,
             place=errand.place,
             came=reason is None,
