@@ -61,11 +61,19 @@ class WorldTime:
 class SimulatedClock:
     """Follows a simulated world's clock, which may start again when the world is rebuilt."""
 
-    def __init__(self, start: float = 0.0, world: WorldTime | None = None) -> None:
-        """`world`: the time of the world that it follows, where others follow it too."""
+    def __init__(
+        self,
+        start: float = 0.0,
+        world: WorldTime | None = None,
+        began_s: float | None = None,
+    ) -> None:
+        """`world`: the time of the world that it follows, where others follow it too; `began_s`:
+        what that said at the `start`, if it is known.
+        """
         self._now = start
         self._offset = start
         self._world = world
+        self._began_s = began_s
 
     def now(self) -> float:
         return self._now
@@ -78,6 +86,10 @@ class SimulatedClock:
     def align(self, robot_time: float) -> None:
         if self._world is not None:
             robot_time = self._world.heard(robot_time)
+        if self._began_s is not None:
+            # Others may have let time pass until this robot was there.
+            self._now = max(self._now, self._offset + robot_time - self._began_s)
+            self._began_s = None
         self._offset = self._now - robot_time
 
     def to_robot(self, time: float) -> float:
