@@ -19,6 +19,7 @@ from mend.fleet.happenings import (
 from mend.server.cli.failing_robot import FailingRobot
 from mend.server.cli.failures import NOT_FINISHED
 from mend.server.cli.local_user import local_author
+from mend.server.cli.run_request import checked_request
 from mend.server.cli.shift_timeline import Deed, Due, Timeline
 from mend.server.cli.shift_transcript import ShiftTranscript
 from mend.server.documents import DocumentKind
@@ -52,9 +53,11 @@ class Shift:
         fleet: FleetOptions,
         speed: float | Literal["max"],
     ) -> None:
+        """Raises `CommandLineError` for options that cannot be."""
         self._scene = scene
         self._document = document
-        self._site = SiteRequest(
+        self._site = checked_request(
+            SiteRequest,
             scene=scene.name,
             world="building",
             speed=speed,
@@ -81,9 +84,10 @@ class Shift:
         async with open_service(settings, recover=False, given=given) as service:
             view = await service.sites.open_site(self._site, local_author())
             robots = {each.stands: each.robot for each in view.robots}
+            fleet = await service.fleets.fleet(view.id)
             async with asyncio.TaskGroup() as tasks:
                 telling = tasks.create_task(self._tell(service))
-                happening = tasks.create_task(self._have_happen(service, view.id, robots))
+                happening = tasks.create_task(self._have_happen(service, fleet, robots))
                 await self._over.wait()
                 telling.cancel()
                 happening.cancel()
@@ -107,8 +111,9 @@ class Shift:
 
     # --- What happens ---------------------------------------------------------------------------
 
-    async def _have_happen(self, service: "Service", site: UUID, robots: Mapping[str, str]) -> None:
-        fleet = await service.fleets.fleet(site)
+    async def _have_happen(
+        self, service: "Service", fleet: "FleetAtWork", robots: Mapping[str, str]
+    ) -> None:
         asked_s = self._document.asked_s
         timeline = Timeline(fleet.wait_until, lambda why: self._told.say(why, fleet.now_s))
         due = [
