@@ -69,32 +69,44 @@ def run(
     """
     import asyncio
 
-    from mend.fleet.request_file import read_request_file
+    from mend.fleet.request_file import read_requests
     from mend.server.cli.journals import new_run_journal
     from mend.server.cli.report import write_report
-    from mend.server.cli.run_request import closed_settings, read_options, read_speed
+    from mend.server.cli.report_file import require_writable
+    from mend.server.cli.run_request import (
+        checked_request,
+        closed_settings,
+        read_options,
+        read_speed,
+    )
     from mend.server.cli.shift import Shift
+    from mend.server.cli.shift_checks import checked_helpers, refuse_impossible
     from mend.server.cli.task_files import read_scene
     from mend.server.sites.requests import FleetOptions
 
     with told_plainly():
         own = closed_settings()
         kept = journal or new_run_journal(own, "shift")
-        document = read_request_file(requests)
-        asked = helper or list(document.helpers)
+        read, setting = read_requests(requests), read_scene(scene)
+        document = read.document
+        refuse_impossible(read, setting, transfer or [])
+        asked = checked_helpers(helper or document.helpers)
         settings = own.model_copy(update={"journal": kept, "helpers": asked})
         shift = Shift(
-            read_scene(scene),
+            setting,
             document,
             seed=seed,
             options=read_options(option or []),
-            fleet=FleetOptions(
+            fleet=checked_request(
+                FleetOptions,
                 capacity=capacity,
                 transfer_places=tuple(transfer or document.transfer_places),
                 answers="yes",
             ),
             speed=read_speed(speed),
         )
+        if report is not None:
+            require_writable(report)
         code = asyncio.run(shift.carry_out(settings))
         if report is not None:
             write_report(kept, report)

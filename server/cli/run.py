@@ -112,6 +112,7 @@ def run(
     from mend.server.cli.other_service import other_service
     from mend.server.cli.output import JsonLines, LiveTranscript
     from mend.server.cli.own_service import own_service
+    from mend.server.cli.report_file import require_writable
     from mend.server.cli.run_files import read_run_files
     from mend.server.cli.run_host import OpenHost
     from mend.server.cli.run_request import (
@@ -151,8 +152,7 @@ def run(
             person=None if person is None else Person(acts=person),
         )
         if report is not None:
-            # A report that cannot be written is told before the run, not after it.
-            report.parent.mkdir(parents=True, exist_ok=True)
+            require_writable(report)
         open_host: OpenHost
         if url is None:
             # All of a service, which one that only asks another has no use for.

@@ -16,7 +16,7 @@ from mend.server.cli.run_files import RunFiles
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.steering_views import SetAutonomy, SteerNode
 from mend.server.settings import Settings, load_settings
-from mend.server.sites.requests import SiteRequest
+from mend.server.sites.requests import FleetOptions, SiteRequest
 from mend.tasks.scenario import Scenario
 
 T = TypeVar("T", bound=BaseModel)
@@ -26,6 +26,7 @@ ARGUMENTS: dict[type[BaseModel], tuple[str, ...]] = {
     SiteRequest: ("scene",),
     SteerNode: ("node",),
     SetAutonomy: (),
+    FleetOptions: (),
 }
 """What is no option of its command."""
 

@@ -1,9 +1,8 @@
 """A shift in a building: a site of its own, the requests of a file, and what happens meanwhile."""
 
 import asyncio
-from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 from uuid import UUID
@@ -17,9 +16,11 @@ from mend.fleet.happenings import (
     WayBarred,
     WrongFloor,
 )
-from mend.fleet.requests import LegAction
+from mend.server.cli.failing_robot import FailingRobot
 from mend.server.cli.failures import NOT_FINISHED
 from mend.server.cli.local_user import local_author
+from mend.server.cli.run_request import checked_request
+from mend.server.cli.shift_timeline import Deed, Due, Timeline
 from mend.server.cli.shift_transcript import ShiftTranscript
 from mend.server.documents import DocumentKind
 from mend.server.fixed_documents import GivenFiles
@@ -34,23 +35,9 @@ from mend.tasks.scene import Scene
 
 if TYPE_CHECKING:
     from mend.fleet.dispatch.booking import AnyRequest
-    from mend.fleet.dispatch.dispatcher import Dispatcher
     from mend.fleet.request_file import RequestsDocument
     from mend.server.composition import Service
     from mend.server.fleets.fleet_at_work import FleetAtWork
-
-
-_BRINGS_WITHIN_S, _LOOKS_EVERY_S, _STILL_DRIVES_S = 1800.0, 5.0, 15.0
-"""A robot that is to fail while it brings something is looked for so long, so often, and is one
-that drives so much longer."""
-
-
-@dataclass(frozen=True, slots=True)
-class Due:
-    """Something to be done at a moment of the site's clock."""
-
-    at_s: float
-    do: Callable[[], Awaitable[None]]
 
 
 class Shift:
@@ -66,9 +53,11 @@ class Shift:
         fleet: FleetOptions,
         speed: float | Literal["max"],
     ) -> None:
+        """Raises `CommandLineError` for options that cannot be."""
         self._scene = scene
         self._document = document
-        self._site = SiteRequest(
+        self._site = checked_request(
+            SiteRequest,
             scene=scene.name,
             world="building",
             speed=speed,
@@ -95,9 +84,10 @@ class Shift:
         async with open_service(settings, recover=False, given=given) as service:
             view = await service.sites.open_site(self._site, local_author())
             robots = {each.stands: each.robot for each in view.robots}
+            fleet = await service.fleets.fleet(view.id)
             async with asyncio.TaskGroup() as tasks:
                 telling = tasks.create_task(self._tell(service))
-                happening = tasks.create_task(self._have_happen(service, view.id, robots))
+                happening = tasks.create_task(self._have_happen(service, fleet, robots))
                 await self._over.wait()
                 telling.cancel()
                 happening.cancel()
@@ -121,28 +111,25 @@ class Shift:
 
     # --- What happens ---------------------------------------------------------------------------
 
-    async def _have_happen(self, service: "Service", site: UUID, robots: Mapping[str, str]) -> None:
-        fleet = await service.fleets.fleet(site)
+    async def _have_happen(
+        self, service: "Service", fleet: "FleetAtWork", robots: Mapping[str, str]
+    ) -> None:
         asked_s = self._document.asked_s
+        timeline = Timeline(fleet.wait_until, lambda why: self._told.say(why, fleet.now_s))
         due = [
-            Due(asked_s.get(each.name, 0.0), partial(self._ask, service, site, each))
+            Due(asked_s.get(each.name, 0.0), partial(self._ask, service, fleet, each))
             for each in self._document.requests
         ]
         for happening in self._document.happenings:
-            due += _moments(happening, fleet, robots)
-        for each in sorted(due, key=lambda each: each.at_s):
-            await fleet.wait_until(each.at_s)
-            try:
-                await each.do()
-            except RefusalError as error:
-                self._told.say(str(error))
+            due += _moments(happening, fleet, robots, timeline.beside)
+        await timeline.run(due)
 
-    async def _ask(self, service: "Service", site: UUID, request: "AnyRequest") -> None:
+    async def _ask(self, service: "Service", fleet: "FleetAtWork", request: "AnyRequest") -> None:
         try:
-            _, booked = await service.fleets.submit(site, request, local_author())
+            _, booked = await service.fleets.submit(fleet.site, request, local_author())
             self._told.booked(booked.name)
         except RefusalError as error:
-            self._told.refused(request.name, str(error))
+            self._told.refused(request.name, str(error), fleet.now_s)
         self._to_come -= 1
         self._end_if_over()
 
@@ -163,7 +150,12 @@ def _interventions(happenings: tuple[Happening, ...]) -> list[ScriptedInterventi
     return done
 
 
-def _moments(happening: Happening, fleet: "FleetAtWork", robots: Mapping[str, str]) -> list[Due]:
+def _moments(
+    happening: Happening,
+    fleet: "FleetAtWork",
+    robots: Mapping[str, str],
+    beside: Callable[[Deed], None],
+) -> list[Due]:
     """What is to be told to the fleet, and when."""
     author = local_author()
     match happening:
@@ -175,55 +167,15 @@ def _moments(happening: Happening, fleet: "FleetAtWork", robots: Mapping[str, st
                 await fleet.cancel(request, author)
 
             return [Due(at_s, cancel)]
-        case RobotFails(robot=robot, reason=reason):
-            failing = _Failing(fleet, None if robot is None else robots.get(robot, robot), reason)
+        case RobotFails(robot=named):
+            robot = None if named is None else robots.get(named, named)
+            failing = FailingRobot(fleet, happening, robot, beside)
             begin, end = failing.begin, failing.end
         case NobodyAnswers():
             begin = partial(fleet.have_answered, "late")
             end = partial(fleet.have_answered, "yes")
     over = [] if happening.until_s is None else [Due(happening.until_s, end)]
     return [Due(happening.at_s, begin), *over]
-
-
-class _Failing:
-    """A robot that fails, and works again; where none is named, one that brings something."""
-
-    def __init__(self, fleet: "FleetAtWork", robot: str | None, reason: str) -> None:
-        self._fleet, self._robot, self._reason = fleet, robot, reason
-
-    async def begin(self) -> None:
-        """Raises `ConflictError` where no robot brings anything for long."""
-        until_s = self._fleet.now_s + _BRINGS_WITHIN_S
-        while self._robot is None:
-            self._robot = await self._fleet.read(who_brings)
-            if self._robot is None:
-                if self._fleet.now_s >= until_s:
-                    raise ConflictError("no robot fails: none was on its way with anything")
-                await self._fleet.wait_until(self._fleet.now_s + _LOOKS_EVERY_S)
-        await self._fleet.operators.take_out(self._robot, self._reason, local_author())
-
-    async def end(self) -> None:
-        if self._robot is not None:
-            await self._fleet.operators.put_back(self._robot, local_author())
-
-
-def who_brings(dispatcher: "Dispatcher") -> str | None:
-    """The robot with the longest way to where it hands something over; None for short ones.
-
-    None either for who meets another robot: its failure would undo that.
-    """
-    meets = {
-        robot
-        for robot, stops in dispatcher.stops().items()
-        if any(action in (LegAction.GIVE, LegAction.TAKE) for _, action in stops)
-    }
-    left_s = {
-        leg.robot: leg.begins_s - dispatcher.now_s
-        for leg in dispatcher.legs_under_way()
-        if leg.action is LegAction.HAND_OVER and leg.robot not in meets
-    }
-    robot = max(left_s, key=lambda each: left_s[each], default=None)
-    return None if robot is None or left_s[robot] < _STILL_DRIVES_S else robot
 
 
 async def _events(service: "Service") -> AsyncIterator[ev.Event]:

@@ -30,9 +30,9 @@ class ShiftTranscript:
         if request not in self.ended:
             self.open.add(request)
 
-    def refused(self, request: str, reason: str) -> None:
-        """A request cannot be met."""
-        self.say(f"refused: {reason}")
+    def refused(self, request: str, reason: str, at_s: float) -> None:
+        """A request cannot be met, it is found at a moment of the site's clock."""
+        self.say(f"refused: {reason}", at_s)
         self.open.discard(request)
         self.ended[request] = RequestStatus.REFUSED
 
@@ -40,18 +40,17 @@ class ShiftTranscript:
         """Print what an event says to whoever follows the shift."""
         match event:
             case ev.RequestChanged():
-                self._now_s = max(self._now_s, event.at_s)
                 self._tell_of_request(event)
             case ev.PlanChanged():
-                self._now_s = max(self._now_s, event.at_s)
                 others = f" ({', '.join(event.requests)})" if event.requests else ""
-                self.say(f"plan {event.number}: {event.reason}{others}")
+                self.say(f"plan {event.number}: {event.reason}{others}", event.at_s)
             case ev.FleetTold():
-                self._now_s = max(self._now_s, event.at_s)
-                self.say(f"{event.finder or 'operator'} {event.told}")
+                self.say(f"{event.finder or 'operator'} {event.told}", event.at_s)
             case ev.RunStarted():
-                self._transcripts[event.run] = Transcript(), self._now_s
-                self.say(f"{event.robots[0]} begins to {event.tree_name.replace('_', ' ')}")
+                since_s = self._now_s if event.at_s is None else event.at_s
+                self._transcripts[event.run] = Transcript(), since_s
+                does = event.tree_name.replace("_", " ")
+                self.say(f"{event.robots[0]} begins to {does}", since_s)
             case _ if event.run in self._transcripts:
                 self._tell_of_run(event, *self._transcripts[event.run])
 
@@ -70,8 +69,9 @@ class ShiftTranscript:
         self.say(f"of {len(self.ended)} requests: {', '.join(told)}")
         return not counts[RequestStatus.REFUSED] and not counts[RequestStatus.FAILED]
 
-    def say(self, text: str) -> None:
-        """Print a line, with the site's clock before it."""
+    def say(self, text: str, at_s: float = 0.0) -> None:
+        """Print a line, with the site's clock before it: `at_s`, or of the last line if later."""
+        self._now_s = max(self._now_s, at_s)
         typer.echo(f"{self._now_s:8.1f}  {text}")
 
     # --- Within -------------------------------------------------------------------------------
@@ -83,7 +83,8 @@ class ShiftTranscript:
         by = f" by {event.robot}" if event.robot else ""
         due = f", expected at {event.done_s:.0f} s" if event.done_s is not None else ""
         why = f": {event.reason}" if event.reason else ""
-        self.say(f"'{event.request}' is {event.status.replace('_', ' ')}{by}{due}{why}")
+        status = event.status.replace("_", " ")
+        self.say(f"'{event.request}' is {status}{by}{due}{why}", event.at_s)
         if STATUS.is_last(RequestStatus(event.status)):
             self.open.discard(event.request)
             self.ended[event.request] = event.status
@@ -94,6 +95,5 @@ class ShiftTranscript:
     def _tell_of_run(self, event: ev.Event, transcript: Transcript, since_s: float) -> None:
         for line in transcript.lines(event):
             if line.tone in _TOLD:
-                self._now_s = max(self._now_s, since_s + line.time_s)
                 by = f"{line.speaker}: " if line.speaker else ""
-                self.say(f"  {by}{line.text}")
+                self.say(f"  {by}{line.text}", since_s + line.time_s)

@@ -123,7 +123,7 @@ class FleetAtWork:
         self._asked_aside: dict[str, str] = {}
         """Where robots that rest are to go, as they stand in the way of others."""
         self._running: list[asyncio.Task[None]] = []
-        self._alarms = Alarms(lambda: self.now_s)
+        self._alarms = Alarms(lambda: self.shown_s)
 
     # --- Its life -----------------------------------------------------------------------------
 
@@ -260,6 +260,8 @@ class FleetAtWork:
         """Have the site's clock come to a moment, whether or not there is anything to do."""
         self._book.changed.set()
         await self._alarms.wait(moment_s)
+        # Reports of robots that drive for long may not have told of it yet.
+        self._site.world.time.heard(moment_s)
 
     # --- What robots tell ---------------------------------------------------------------------
 
@@ -300,6 +302,7 @@ class FleetAtWork:
 
     def saw(self, robot: str, poses: Poses) -> None:
         """A robot says where it is, by the site's clock."""
+        self._alarms.ring()
         self._meeting_watch.take(robot, poses)
         errand = self._errands.going.get(robot)
         charges = errand is not None and errand.charges

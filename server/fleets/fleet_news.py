@@ -22,9 +22,9 @@ class FleetNews:
         utc_now: Callable[[], datetime],
         now_s: Callable[[], float],
     ) -> None:
-        """`now_s`: the site's clock, which goes on while nothing is decided."""
-        self._now_s = now_s
+        """`now_s`: the site's clock, which the dispatcher only knows as it was told last."""
         self._site = site
+        self._now_s = now_s
         self._dispatcher = dispatcher
         self._utc_now = utc_now
         self._told = {each.name: _state(each) for each in dispatcher.views()}

@@ -69,14 +69,17 @@ class SimulatedClock:
         self,
         start: float = 0.0,
         world: WorldTime | None = None,
+        began_s: float | None = None,
         shown_s: Callable[[], float] | None = None,
     ) -> None:
-        """`world`: the time of the world that it follows, where others follow it too; `shown_s`:
-        how far that is by all that robots say, also by what is only for display.
+        """`world`: the time of the world that it follows, where others follow it too; `began_s`:
+        what that said at the `start`, if it is known; `shown_s`: how far it is by all that robots
+        say, also by what is only for display.
         """
         self._now = start
         self._offset = start
         self._world = world
+        self._began_s = began_s
         self._shown_s = shown_s
         self._aligned = False
 
@@ -91,6 +94,10 @@ class SimulatedClock:
     def align(self, robot_time: float) -> None:
         if self._world is not None:
             robot_time = self._world.heard(robot_time)
+        if self._began_s is not None:
+            # Others may have let time pass until this robot was there.
+            self._now = max(self._now, self._offset + robot_time - self._began_s)
+            self._began_s = None
         self._offset = self._now - robot_time
         self._aligned = True
 

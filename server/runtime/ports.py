@@ -84,6 +84,10 @@ class Worlds(Protocol):
         """
         ...
 
+    def now_s(self, site: UUID) -> float | None:
+        """What a site's clock says, as far as it is known. Raises `NotFoundError`."""
+        ...
+
     def check(self, world: str, options: Mapping[str, Any]) -> None:
         """Raises `WrongInputError` where there is no such world, or none with such options here."""
         ...

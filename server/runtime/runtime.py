@@ -220,13 +220,16 @@ class Runtime:
 
     async def _begin(self, new: NewRun) -> RunSummary:
         states: list[RunState] = []
+        site = new.started.site
+        at_s = None if site is None else self._worlds.now_s(site)
+        begun = new.started.model_copy(update={"at_s": at_s})
 
         def fold(numbered: list[ev.Event]) -> None:
             started = cast(ev.RunStarted, numbered[0])
             states.append(RunState(started, self._scripts, new.nodes))
             self._states.add(states[0])
 
-        await self._journal.append(Entry(events=[new.started], tree=new.tree), fold)
+        await self._journal.append(Entry(events=[begun], tree=new.tree), fold)
         (state,) = states
         # One that is journaled while the service stops is taken up at the next start.
         if not self._closing:

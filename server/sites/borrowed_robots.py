@@ -25,15 +25,20 @@ class BorrowedRobots:
         give_back: Callable[[Run], Awaitable[None]],
         *,
         starts_world: bool,
+        began_s: float | None = None,
     ) -> None:
+        """`began_s`: what the world's clock said when the run began, as far as that is known."""
         self._site = site
         self._run = run
         self._give_back = give_back
         self._starts_world = starts_world
+        self._began_s = began_s
 
     def clock(self, start_s: float) -> RunClock:
         """The world's, by which the run is so far."""
-        return SimulatedClock(start_s, self._site.world.time, lambda: self._site.shown_s)
+        # Of one that goes on after a restart it says nothing: the world may have gone back since.
+        began_s = self._began_s if start_s == 0.0 else None
+        return SimulatedClock(start_s, self._site.world.time, began_s, lambda: self._site.shown_s)
 
     def lend(self) -> None:
         """The run has its robots from now on."""

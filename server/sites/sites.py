@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from datetime import datetime
@@ -309,6 +310,11 @@ class Sites:
         found.require_free(wanted)
         return SiteOffer(record.world, record.scene_for(wanted), wanted, record.seed, record.speed)
 
+    def now_s(self, site: UUID) -> float | None:
+        """What a site's clock says, as far as it is known. Raises `NotFoundError`."""
+        latest_s = self._find(site).world.time.latest_s
+        return latest_s if math.isfinite(latest_s) else None
+
     def open(self, state: RunState, run: Callable[[], Run]) -> BorrowedRobots:
         """The hardware of a run, which starts it; `run` is asked for only then.
 
@@ -316,7 +322,9 @@ class Sites:
         """
         if state.started.site is not None:
             site = self._find(state.started.site)
-            return BorrowedRobots(site, run, self._give_back, starts_world=False)
+            return BorrowedRobots(
+                site, run, self._give_back, starts_world=False, began_s=state.started.at_s
+            )
         own = self._site(state.id, state.started.world, state.frames, _own_setup(state))
 
         async def stop(_: Run) -> None:

@@ -74,6 +74,9 @@ class PretendWorlds:
     def offer(self, site: UUID, robots: list[str]) -> SiteOffer:  # noqa: ARG002
         raise NotFoundError(f"there is no site {site}")
 
+    def now_s(self, site: UUID) -> float | None:  # noqa: ARG002
+        return None
+
     def open(self, state: RunState, run: Any) -> NoHardware:  # noqa: ARG002
         return NoHardware(self.restarted)
 

@@ -75,6 +75,26 @@ async def test_rooms_that_are_asked_for_are_visited_by_all_robots(tmp_path: Path
     assert runs == {"finished": 4}
 
 
+async def test_who_waits_for_a_moment_is_woken_at_it_though_the_only_robot_drives(
+    tmp_path: Path,
+) -> None:
+    async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
+        site = await open_office_with_fleet(service, "max")
+        fleet = await service.fleets.fleet(site)
+        await service.fleets.submit(site, GoToRoom(name="room6", place="106"), None)
+
+        def drives(events: list[ev.Event]) -> bool:
+            return any(isinstance(each, ev.StepStarted) for each in events)
+
+        events = await events_until(service, drives)
+        begun_s = next(e.at_s for e in events if isinstance(e, ev.RunStarted))
+        assert begun_s is not None
+        moment_s = max(begun_s, fleet.now_s) + 2.0
+        await fleet.wait_until(moment_s)
+        assert moment_s <= fleet.now_s < moment_s + 1.0
+        await until_over(service, {"room6"})
+
+
 @pytest.mark.slow(2)
 async def test_a_service_that_stopped_goes_on_with_what_its_robots_were_doing(
     tmp_path: Path,

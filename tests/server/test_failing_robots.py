@@ -6,7 +6,7 @@ from mend.fleet.dispatch.setting import FleetSetting, ServiceRobot
 from mend.fleet.requests import Transport
 from mend.maps.building.building import Building, PlaceKind
 from mend.maps.building.random_building import random_building
-from mend.server.cli.shift import who_brings
+from mend.server.cli.failing_robot import who_brings
 
 OFFICE = Building(random_building(1, 1, 30))
 ROOMS = OFFICE.of_kind(PlaceKind.ROOM)
@@ -38,7 +38,9 @@ def bring(dispatcher: Dispatcher, origin: str, destination: str) -> str:
 def test_it_is_one_that_is_on_its_way_with_something() -> None:
     dispatcher = fleet()
     assert who_brings(dispatcher) is None
-    assert bring(dispatcher, ROOMS[0], ROOMS[-2]) == who_brings(dispatcher)
+    robot = bring(dispatcher, ROOMS[0], ROOMS[-2])
+    assert robot == who_brings(dispatcher)
+    assert who_brings(dispatcher, out={robot}) is None, "it has failed already"
 
 
 def test_it_is_none_that_is_there_soon() -> None:

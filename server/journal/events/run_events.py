@@ -11,9 +11,10 @@ class RunStarted(Event):
     """A run began; everything needed to fold it again is here.
 
     `tree` and `scene` are the checked definitions in their JSON form; `options` the request's
-    remaining fields. `site` is where it is, None in a world of its own. `script` is the scenario's
-    definition in its JSON form, None without one and in the journals of an older Mend, whose
-    scenarios are all built in. `author` is None there, too.
+    remaining fields. `site` is where it is, None in a world of its own; `at_s` what the site's
+    clock said then, where the run's begins, None where nobody knew and in the journals of an older
+    Mend. `script` is the scenario's definition in its JSON form, None without one and in the
+    journals of an older Mend, whose scenarios are all built in. `author` is None there, too.
     """
 
     type: Literal["run_started"] = "run_started"
@@ -29,6 +30,7 @@ class RunStarted(Event):
     options: dict[str, Any]
     author: Author | None = None
     site: UUID | None = None
+    at_s: float | None = None
 
 
 class InterventionAccepted(Event):

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pretend_service import pretend_service
 from task_documents import definition_of
 
-from mend.server.runtime.clock import SimulatedClock, has_come
+from mend.server.runtime.clock import SimulatedClock, WorldTime, has_come
 from mend.server.runtime.views import RunStatus
 from mend.sim.tabletop.layout import lay_out
 
@@ -33,6 +33,18 @@ def test_what_is_still_to_come_has_not_come() -> None:
     clock = SimulatedClock(3.0)
     assert not has_come(clock, 3.1)
     assert has_come(clock, 3.0)
+
+
+def test_what_passed_in_its_world_until_a_robot_was_there_has_passed_for_the_run_too() -> None:
+    world = WorldTime()
+    world.heard(500.0)
+    clock = SimulatedClock(0.0, world, began_s=500.0)
+    world.heard(502.0)
+    clock.align(490.0)
+    assert (clock.now(), clock.to_robot(10.0)) == (2.0, 510.0)
+    world.begin_anew()
+    clock.align(498.0)
+    assert (clock.now(), clock.to_robot(10.0)) == (2.0, 506.0), "the world was made anew"
 
 
 @pytest.mark.parametrize("robot_time", [0.0, 17.8, 1000.1])
