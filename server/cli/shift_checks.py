@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from pydantic import TypeAdapter, ValidationError
 
 from mend.documents.problem import list_names
-from mend.errors import RefusalError
+from mend.errors import NotFoundError, WrongInputError
 from mend.fleet.happenings import Happening, RobotFails, WayBarred, WrongFloor
 from mend.fleet.request_file import Place, ReadRequests, RequestsDocument
 from mend.maps.building.building import Building
@@ -97,6 +97,8 @@ def _no_goal(places: PlaceNames, name: str) -> str | None:
     """Why no robot is sent to a place; None where one is."""
     try:
         places.in_scene(name)
-    except RefusalError as error:
+    except NotFoundError as error:
+        return str(error)
+    except WrongInputError as error:
         return f"{error}; robots are sent to {list_names(places.names)}"
     return None

@@ -74,10 +74,12 @@ def test_what_cannot_happen_is_told_with_its_line_and_what_is_there(
 def test_a_transfer_place_that_is_not_there_is_told_with_those_that_are(tmp_path: Path) -> None:
     with pytest.raises(RequestFileError, match=r"shift\.yaml:2: 'transfer_places\.0': .*'F1/no'; "):
         refuse(tmp_path, "transfer_places: [F1/no]")
-    with pytest.raises(
-        CommandLineError, match=r"--transfer: .*'F1/no'; robots are sent to 'F1/101'"
-    ):
+    with pytest.raises(CommandLineError, match=r"--transfer: .*'F1/no'; there is 'F1/101'"):
         refuse(tmp_path, transfers=("F1/no",))
+    with pytest.raises(
+        CommandLineError, match=r"--transfer: .*'F1/w0_0'.*; robots are sent to 'F1/101'"
+    ):
+        refuse(tmp_path, transfers=("F1/w0_0",))
 
 
 def test_helpers_have_names_and_each_its_own(tmp_path: Path) -> None:
