@@ -31,6 +31,8 @@ def _mcl(vector_map: VectorMap, seed: int) -> Localizer:
 
 METHODS: dict[str, MakeLocalizer] = {"enml": _enml, "cgr": _cgr, "mcl": _mcl}
 
+_WARMING_UPDATES = 12
+
 
 def warm_up(method: str) -> None:
     """Compile what a method needs, by a few updates in a made-up room, at a known place and lost.
@@ -49,7 +51,8 @@ def warm_up(method: str) -> None:
     anywhere = np.diag([100.0, 100.0, 10.0])
     for covariance in (None, anywhere):
         localizer.reset(np.zeros(3), covariance)
-        for number in range(4):
+        # So many that a search comes to its end.
+        for number in range(_WARMING_UPDATES):
             scan = Scan(to_wall, -np.pi, 2.0 * np.pi / 90, 8.0, float(number))
             motion = np.array([0.001, 0.0, 0.0]) if number < 2 else np.array([0.4, 0.0, 0.3])
             localizer.update(motion, scan)

@@ -191,6 +191,9 @@ async def _opening_pages(browser: Browser, url: str) -> AsyncIterator[OpenPage]:
 
     yield open_page
     for context in contexts:
+        for page in context.pages:
+            # What is still on its way is nobody's any more.
+            await page.unroute_all(behavior="ignoreErrors")
         await context.close()
     assert mistakes == []
 
