@@ -2,17 +2,17 @@
 
     python benchmarks/building_escorts.py [--buildings 10] [--first 0] [--robots 2]
         [--seconds 600] [--localizer enml|exact] [--unmapped 0.2] [--dawdling 0.3] [--no-shows 0.1]
-        [--people 0]
+        [--people 0] [--building FILE ...]
 
-Draws buildings by seeds. Each robot meets somebody at a drawn room, leads them to another, and does
-so again. Half of the doors that people open are shut at first. Whoever is asked does what the robot
-asks for, 2 s later, and the robot looks whether that is so; what it does not see in 60 s is a
-failure. An escort has arrived if robot and person really stand within 2 m of each other, on one
-floor, within 3 m of the destination, when the robot says that it is done; `said, and not so` counts
-the others. `led` counts the seconds in which a robot led somebody, and `ahead` those of them in
-which it drove although the person had been more than 3.3 m away, or out of sight, for longer than
-1.5 s (standing takes a second; not while it leaves an elevator). The exit code is 1 where a robot
-touched anything, or anybody.
+Draws buildings by seeds, or takes those of files, each with as many seeds. Each robot meets
+somebody at a drawn room, leads them to another, and does so again. Half of the doors that people
+open are shut at first. Whoever is asked does what the robot asks for, 2 s later, and the robot
+looks whether that is so; what it does not see in 60 s is a failure. An escort has arrived if robot
+and person really stand within 2 m of each other, on one floor, within 3 m of the destination, when
+the robot says that it is done; `said, and not so` counts the others. `led` counts the seconds in
+which a robot led somebody, and `ahead` those of them in which it drove although the person had been
+more than 3.3 m away, or out of sight, for longer than 1.5 s (standing takes a second; not while it
+leaves an elevator). The exit code is 1 where a robot touched anything, or anybody.
 """
 
 # ruff: noqa: T201
@@ -20,6 +20,7 @@ import argparse
 import math
 import sys
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,6 +30,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 
 from building_bench import BuildingBench, made_up
 
+from mend.maps.building.building_file import read_building_file
 from mend.robots.base.behaviors.driving import CLEARS_M
 from mend.robots.link.messages import (
     Finished,
@@ -223,15 +225,15 @@ def main() -> int:
     parser.add_argument("--dawdling", type=float, default=0.3)
     parser.add_argument("--no-shows", type=float, default=0.1)
     parser.add_argument("--people", type=int, default=0)
+    parser.add_argument("--building", type=Path, nargs="*", default=[])
     arguments = parser.parse_args()
     total: Counter[str] = Counter()
     touches, nearest_m = 0, math.inf
-    for seed in range(arguments.first, arguments.first + arguments.buildings):
-        scene = scene_of(made_up(1 + seed % 4, 6 + seed % 15, seed), "escorts", arguments.robots)
+    for name, seed, scene in _scenes(arguments):
         escorts = Escorts(scene, seed, arguments)
         escorts.run(arguments.seconds)
         print(
-            f"seed {seed}: {escorts.touches} touches, nearest {escorts.nearest_m:.2f} m, "
+            f"{name}: {escorts.touches} touches, nearest {escorts.nearest_m:.2f} m, "
             f"{_told(escorts.counts)}",
             flush=True,
         )
@@ -240,6 +242,17 @@ def main() -> int:
         total += escorts.counts
     print(f"all: {touches} touches, nearest {nearest_m:.2f} m, {_told(total)}")
     return 1 if touches or nearest_m < 0.0 else 0
+
+
+def _scenes(options: argparse.Namespace) -> Iterator[tuple[str, int, Scene]]:
+    seeds = range(options.first, options.first + options.buildings)
+    for file in options.building:
+        building = read_building_file(file)
+        for seed in seeds:
+            yield f"{file.stem}, seed {seed}", seed, scene_of(building, "escorts", options.robots)
+    for seed in () if options.building else seeds:
+        building = made_up(1 + seed % 4, 6 + seed % 15, seed)
+        yield f"seed {seed}", seed, scene_of(building, "escorts", options.robots)
 
 
 def _told(counts: Counter[str]) -> str:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mend.fleet.right_of_way.floor_grid import FloorGrid, Mask, Matrix, Point, sampled
+from mend.maps.building.floor_grid import FloorGrid, Mask, Matrix, Point, sampled
 from mend.maps.building.building import Building, Floor
 from mend.maps.building.cabin import CABIN_M, stop_of
 from mend.maps.building.clearance import apart_m

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mend.fleet.right_of_way.floor_grid import Point, sampled
+from mend.maps.building.floor_grid import Point, sampled
 from mend.fleet.right_of_way.right_of_way import RightOfWay, Standing, Yielding
 from mend.maps.building.building import Building
 from mend.robots.base.body import BasePose

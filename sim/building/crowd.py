@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from mend.sim.building.building_robot import BuildingRobot
 from mend.sim.building.bystander import RADIUS_M, Bystander
 from mend.sim.building.floor_pose import FloorPose
-from mend.sim.building.guests import Guest, Guests
+from mend.sim.building.guest import Guest
+from mend.sim.building.guests import Guests
 from mend.sim.building.walkers import Walker, Walkers
 
 Circle = tuple[float, float, float]

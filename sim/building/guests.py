@@ -1,21 +1,22 @@
 """People whom robots escort: they wait where they are met, follow, and now and then dawdle."""
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mend.documents.strict_model import StrictModel
 from mend.maps.building.crossing import crossed_by
+from mend.robots.base.companion import CAUGHT_UP_M
 from mend.sim.building.building_robot import PERIOD_S, BuildingRobot
 from mend.sim.building.bystander import RADIUS_M
 from mend.sim.building.door import WorldDoor, open_doors
 from mend.sim.building.draws import read_draws, written_draws
 from mend.sim.building.floor_pose import FloorPose
+from mend.sim.building.guest import Guest, GuestSnapshot, guest_of, is_at
 from mend.sim.building.social_force import KEEP_M, ahead, free_step, pushed
+from mend.sim.building.way_on_foot import may_walk, way_on_foot
 
 Matrix = NDArray[np.float64]
 Point = tuple[float, float]
@@ -24,87 +25,19 @@ _SPEEDS_M_S = (0.7, 1.3)
 _LATE = 0.3
 _LATE_S = (5.0, 60.0)
 """So often who is to be met comes only so long after the robot."""
-_AT_PLACE_M = 3.0
 _THINKS_EVERY_S = 10.0
 _DAWDLES_S = (5.0, 60.0)
-_CRUMB_M = 0.25
-_PASSED_M = 0.4
+_LOOKS_EVERY_S = 5.0
+"""Who is off their way looks for another so often."""
 _FOLLOWS_M = 1.1
 """Who follows stays so far behind, along the way."""
 _SLOWS_OVER_M = 0.8
 _STILL_M_S = 0.08
-_LEAVES_S = 600.0
-"""Whom nobody leads any more goes their own way after so long."""
 _FROM_STOP_M = 0.33
 _ASIDE_M = 0.15
 """In a cabin whose middle a robot leaves by less there is no room for anybody else."""
 _NEAR_STOP_M = 1.6
 _IN_CABIN_KEEP_M = 0.02
-
-
-class GuestSnapshot(StrictModel):
-    """A guest as they are kept; see `Guest`. Poses are floor, x, y."""
-
-    person: str
-    place: str
-    at: tuple[str, float, float] | None
-    speed_m_s: float
-    late_s: float | None
-    comes_s: float | None
-    led: bool
-    velocity: tuple[float, float]
-    trail: list[tuple[float, float]]
-    trail_floor: str
-    paused_until_s: float
-    thinks_s: float
-    left_s: float | None
-
-
-@dataclass(slots=True)
-class Guest:
-    """Who is to be met at a `place`, and led from there.
-
-    `where`: None until they have come, `late_s` after the robot (None: never), at `comes_s`.
-    `trail`: where the robot has been that they follow, and they have not, on `trail_floor`. They
-    stand until `paused_until_s`. `left_s`: since when nobody leads them.
-    """
-
-    person: str
-    place: str
-    speed_m_s: float
-    late_s: float | None
-    where: FloorPose | None = None
-    comes_s: float | None = None
-    led: bool = False
-    velocity: Point = (0.0, 0.0)
-    trail: list[Point] = field(default_factory=list)
-    trail_floor: str = ""
-    paused_until_s: float = 0.0
-    thinks_s: float = 0.0
-    left_s: float | None = None
-
-    radius_m = RADIUS_M
-
-    @property
-    def at(self) -> FloorPose:
-        assert self.where is not None, "they have come"
-        return self.where
-
-    @property
-    def moving(self) -> bool:
-        return math.hypot(*self.velocity) > _STILL_M_S
-
-    def ride(self, room: str) -> None:
-        self.where = replace(self.at, floor=room)
-
-    def get_out_at(self, floor: str, shift: tuple[float, float]) -> None:
-        at = self.at
-        self.where = FloorPose(floor, at.x + shift[0], at.y + shift[1])
-
-    def way_m(self, robot: FloorPose) -> float:
-        """How far it is along the trail to the robot."""
-        points = [(self.at.x, self.at.y), *self.trail, (robot.x, robot.y)]
-        return sum(math.dist(a, b) for a, b in pairwise(points))
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +78,7 @@ class Guests:
     def expect(self, robot: int, person: str, place: str) -> None:
         """A robot comes to meet somebody, who hears of it."""
         known = self.of_robots.get(robot)
-        if known is not None and self._waits(known, person, place):
+        if known is not None and known.waits_for(person, place, self._places.get(place)):
             known.left_s = None
             return
         absent, late, late_s, speed = self._rng.random(4)
@@ -155,12 +88,6 @@ class Guests:
         elif late < _LATE:
             guest.late_s = _between(_LATE_S, late_s)
         self.of_robots[robot] = guest
-
-    def _waits(self, guest: Guest, person: str, place: str) -> bool:
-        """Whether they wait there for a robot already, and were not led away since."""
-        if (guest.person, guest.place) != (person, place):
-            return False
-        return guest.where is None or _is_at(guest.at, self._places[place])
 
     def lead(self, robot: int, person: str) -> None:
         """A robot has somebody follow whom it has met."""
@@ -185,6 +112,7 @@ class Guests:
         if guest.late_s is None:
             return f"nobody here is called {guest.person}"
         guest.paused_until_s, guest.thinks_s = time_s, time_s + _THINKS_EVERY_S
+        guest.looks_s = time_s
         if guest.where is None:
             guest.comes_s = time_s
         elif guest.at.floor != near.floor:
@@ -196,20 +124,20 @@ class Guests:
     def state(self) -> Hashable:
         """All that they do, for comparison."""
         return tuple(
-            (n, e.where, e.velocity, e.led, len(e.trail), e.comes_s, e.paused_until_s, e.thinks_s)
+            (n, e.where, e.velocity, e.led, len(e.trail), *e.times_s())
             for n, e in self.of_robots.items()
         )
 
     def changes_s(self, time_s: float) -> float:
         """When the next one may do something by the clock alone; infinite if none does."""
-        times_s = (at_s for each in self.of_robots.values() for at_s in _times_s(each))
+        times_s = (at_s for each in self.of_robots.values() for at_s in each.times_s())
         return min((each for each in times_s if each > time_s), default=math.inf)
 
     # --- What they do ---------------------------------------------------------------------------
 
     def walk(self, time_s: float, robots: Sequence[BuildingRobot], around: Surroundings) -> None:
         """One cycle."""
-        gone = [n for n, each in self.of_robots.items() if _has_gone(each, time_s)]
+        gone = [n for n, each in self.of_robots.items() if each.has_gone(time_s)]
         for number in gone:
             del self.of_robots[number]
         for number, guest in self.of_robots.items():
@@ -225,7 +153,7 @@ class Guests:
         place = self._places.get(guest.place)
         if place is None or guest.late_s is None:
             return
-        if guest.comes_s is None and (guest.late_s == 0.0 or _is_at(robot.at, place)):
+        if guest.comes_s is None and (guest.late_s == 0.0 or is_at(robot.at, place)):
             guest.comes_s = time_s + guest.late_s
         if guest.comes_s is not None and time_s >= guest.comes_s:
             guest.where = around.room_beside(place)
@@ -234,7 +162,9 @@ class Guests:
     def _follow(
         self, guest: Guest, robot: BuildingRobot, time_s: float, around: Surroundings
     ) -> None:
-        _note_trail(guest, robot)
+        if guest.led:
+            guest.note(robot.at)
+        guest.pass_on()
         here = np.array([guest.at.x, guest.at.y])
         stop, inside = around.stop_around(robot), around.stop_around(guest)
         if stop is not None and _gets_in(guest, robot, stop):
@@ -243,17 +173,44 @@ class Guests:
         left_m = guest.way_m(robot.at)
         goes = inside is not None or (guest.led and not self._dawdles(guest, time_s))
         goes = goes and robot.at.floor == guest.at.floor and left_m >= _FOLLOWS_M
+        goes |= not guest.led and self._goes_to_meet(guest, robot, around)
         # Nobody lets themselves be pushed out of a cabin where it has no door.
         keep_m = None if inside is None else _IN_CABIN_KEEP_M
-        if not goes or not guest.trail:
+        if not goes or not self._has_way(guest, robot, time_s, around):
             self._step(guest, here, 0.0, robot, around, keep_m)
             return
         if open_doors(around.doors, guest.at, time_s):
             return
-        _cut_off(guest, around.segments(guest.at.floor))
-        slowed = (left_m - _FOLLOWS_M + 0.2) / _SLOWS_OVER_M
+        slowed = (guest.way_m(robot.at) - _FOLLOWS_M + 0.2) / _SLOWS_OVER_M
         goal = np.array(guest.trail[0])
-        self._step(guest, goal, guest.speed_m_s * min(1.0, slowed), robot, around, keep_m)
+        speed_m_s = guest.speed_m_s * min(1.0, max(0.0, slowed))
+        self._step(guest, goal, speed_m_s, robot, around, keep_m)
+
+    def _goes_to_meet(self, guest: Guest, robot: BuildingRobot, around: Surroundings) -> bool:
+        """Whether a robot has come for who waits out of its sight, or too far away."""
+        place = self._places.get(guest.place)
+        if guest.left_s is not None or place is None or not is_at(robot.at, place):
+            return False
+        if robot.moving or robot.at.floor != guest.at.floor:
+            return False
+        way = np.array([guest.at.x, guest.at.y, robot.at.x, robot.at.y])
+        far = math.dist(way[:2], way[2:]) > CAUGHT_UP_M - 0.5
+        return far or bool(len(crossed_by(way, around.segments(guest.at.floor))))
+
+    def _has_way(
+        self, guest: Guest, robot: BuildingRobot, time_s: float, around: Surroundings
+    ) -> bool:
+        """Whether there is a point to walk to; who is off their way looks for another."""
+        walls, here = around.segments(guest.at.floor), (guest.at.x, guest.at.y)
+        goal = guest.trail[0] if guest.trail else (robot.at.x, robot.at.y)
+        if may_walk(here, goal, walls):
+            guest.trail, guest.trail_floor = guest.trail or [goal], guest.at.floor
+        elif time_s >= guest.looks_s:
+            guest.looks_s = time_s + _LOOKS_EVERY_S
+            guest.trail = way_on_foot(here, (robot.at.x, robot.at.y), walls) or guest.trail
+            guest.trail_floor = guest.at.floor
+            _cut_off(guest, walls)
+        return bool(guest.trail)
 
     def _dawdles(self, guest: Guest, time_s: float) -> bool:
         if time_s >= guest.thinks_s:
@@ -306,24 +263,7 @@ class Guests:
 
     def snapshot(self) -> dict[int, GuestSnapshot]:
         """Who is where, and whom they follow."""
-        return {
-            robot: GuestSnapshot(
-                person=each.person,
-                place=each.place,
-                at=None if each.where is None else (each.at.floor, each.at.x, each.at.y),
-                speed_m_s=each.speed_m_s,
-                late_s=each.late_s,
-                comes_s=each.comes_s,
-                led=each.led,
-                velocity=each.velocity,
-                trail=list(each.trail),
-                trail_floor=each.trail_floor,
-                paused_until_s=each.paused_until_s,
-                thinks_s=each.thinks_s,
-                left_s=each.left_s,
-            )
-            for robot, each in self.of_robots.items()
-        }
+        return {robot: each.snapshot() for robot, each in self.of_robots.items()}
 
     def draws(self) -> str:
         """What is drawn next."""
@@ -332,47 +272,12 @@ class Guests:
     def restore(self, guests: Mapping[int, GuestSnapshot], draws: str) -> None:
         """Raises `ValueError` for draws that no generator wrote."""
         read_draws(self._rng, draws)
-        self.of_robots = {
-            robot: Guest(
-                person=each.person,
-                place=each.place,
-                speed_m_s=each.speed_m_s,
-                late_s=each.late_s,
-                where=None if each.at is None else FloorPose(*each.at),
-                comes_s=each.comes_s,
-                led=each.led,
-                velocity=each.velocity,
-                trail=list(each.trail),
-                trail_floor=each.trail_floor,
-                paused_until_s=each.paused_until_s,
-                thinks_s=each.thinks_s,
-                left_s=each.left_s,
-            )
-            for robot, each in guests.items()
-        }
+        self.of_robots = {robot: guest_of(each) for robot, each in guests.items()}
 
 
 def _between(limits: tuple[float, float], share: float) -> float:
     low, high = limits
     return float(low + share * (high - low))
-
-
-def _times_s(guest: Guest) -> Iterator[float]:
-    """When a guest comes, thinks, walks on or goes."""
-    yield guest.paused_until_s
-    yield guest.thinks_s
-    if guest.comes_s is not None:
-        yield guest.comes_s
-    if guest.left_s is not None:
-        yield guest.left_s + _LEAVES_S
-
-
-def _has_gone(guest: Guest, time_s: float) -> bool:
-    return guest.left_s is not None and time_s >= guest.left_s + _LEAVES_S
-
-
-def _is_at(at: FloorPose, place: FloorPose) -> bool:
-    return at.floor == place.floor and math.dist((at.x, at.y), (place.x, place.y)) < _AT_PLACE_M
 
 
 def _cut_off(guest: Guest, segments: Matrix) -> None:
@@ -384,23 +289,6 @@ def _cut_off(guest: Guest, segments: Matrix) -> None:
         if not len(crossed_by(np.array([*here, *point]), segments))
     )
     del guest.trail[: next(free, 0)]
-
-
-def _note_trail(guest: Guest, robot: BuildingRobot) -> None:
-    """Remember where the robot is, and forget what the guest has passed."""
-    at = robot.at
-    if not at.floor.startswith("/"):
-        if at.floor != guest.trail_floor:
-            guest.trail, guest.trail_floor = [], at.floor
-        last = guest.trail[-1] if guest.trail else None
-        if last is None or math.dist(last, (at.x, at.y)) >= _CRUMB_M:
-            guest.trail.append((at.x, at.y))
-    if guest.at.floor != guest.trail_floor:
-        return
-    here = guest.at.x, guest.at.y
-    passed = [n for n, each in enumerate(guest.trail) if math.dist(each, here) < _PASSED_M]
-    if passed:
-        del guest.trail[: passed[-1] + 1]
 
 
 def _ride_alone(guest: Guest, robot: FloorPose, around: Surroundings) -> str:

@@ -5,7 +5,7 @@ from mend.sim.building.belief import BeliefSnapshot
 from mend.sim.building.elevator_bank import CabinSnapshot
 from mend.sim.building.furniture import Row
 from mend.sim.building.goods import ItemSnapshot, WishSnapshot
-from mend.sim.building.guests import GuestSnapshot
+from mend.sim.building.guest import GuestSnapshot
 from mend.sim.building.odometry import OdometerSnapshot
 from mend.sim.building.robot_basket import BasketSnapshot
 from mend.sim.building.robot_battery import BatterySnapshot

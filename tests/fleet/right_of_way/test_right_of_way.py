@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from mend.fleet.right_of_way.floor_grid import Point, sampled
+from mend.maps.building.floor_grid import Point, sampled
 from mend.fleet.right_of_way.right_of_way import (
     AGAIN_S,
     APART_M,

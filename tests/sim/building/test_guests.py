@@ -2,6 +2,7 @@
 
 import json
 import math
+from itertools import pairwise, product
 
 import pytest
 from building_bench import BuildingBench, made_up
@@ -16,8 +17,10 @@ from mend.robots.base.floor_ways import FloorWays
 from mend.robots.link.messages import Finished, Interrupt, IssueDetected, Look, Looked, Resume
 from mend.sim.building.bystander import RADIUS_M
 from mend.sim.building.cabin import CabinState
-from mend.sim.building.guests import Guest
+from mend.sim.building.floor_pose import FloorPose
+from mend.sim.building.guest import Guest
 from mend.sim.building.scene import scene_of
+from mend.sim.building.way_on_foot import way_on_foot
 from mend.tasks.intervention import Act, Intervention
 
 ROBOT, LEE = "robot1", "Ms Lee"
@@ -191,6 +194,48 @@ def test_who_dawdles_is_waited_for_and_asked_for() -> None:
     bench.run()
     assert len(bench.of(Finished)) == 2
     assert away_m(bench) <= CAUGHT_UP_M + 0.2
+
+
+def out_of_sight(bench: BuildingBench, place: str) -> FloorPose:
+    """Where somebody may stand who cannot be seen from a place, by the shortest way to it."""
+    pose = bench.scene.places[place].pose
+    middle, space = FloorPose("F1", pose.x, pose.y), bench.world._space
+    ways: dict[float, FloorPose] = {}
+    for away_m, angle in product((1.5, 2.0, 3.0, 4.0), range(0, 360, 15)):
+        x = middle.x + away_m * math.cos(math.radians(angle))
+        y = middle.y + away_m * math.sin(math.radians(angle))
+        at = FloorPose("F1", x, y)
+        if space.sees(middle, at) or space.touches(at, RADIUS_M + 0.1):
+            continue
+        way = way_on_foot((x, y), (middle.x, middle.y), space.segments("F1"))
+        if way:
+            ways[sum(math.dist(a, b) for a, b in pairwise([(x, y), *way]))] = at
+    return ways[min(ways)]
+
+
+def test_who_waits_out_of_sight_comes_to_the_robot() -> None:
+    bench = bench_of(dawdling=0.0)
+    bench.go(ROBOT, "F1-101", "meet_person", person=LEE)
+    bench.group.advance(0.1)
+    guest_of(bench).where = out_of_sight(bench, "F1-101")
+    assert guest_of(bench).late_s == 0.0
+    bench.run()
+    assert bench.of(Finished)
+    assert away_m(bench) <= CAUGHT_UP_M + 0.2
+    assert not bench.of(IssueDetected)
+
+
+def test_who_was_pushed_behind_a_wall_gets_round_it() -> None:
+    bench = bench_of(dawdling=0.0)
+    meet(bench)
+    lead(bench, "F1-104")
+    bench.group.advance(0.2)
+    guest_of(bench).where = out_of_sight(bench, "F1-101")
+    bench.run()
+    assert len(bench.of(Finished)) == 2
+    assert is_at(bench, "F1-104")
+    assert away_m(bench) <= CAUGHT_UP_M + 0.2
+    assert bench.world.touches == 0
 
 
 def test_who_does_not_come_at_all_is_never_met() -> None:

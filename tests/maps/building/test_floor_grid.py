@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mend.fleet.right_of_way.floor_grid import CELL_M, HALF_M, FloorGrid, Point, sampled
+from mend.maps.building.floor_grid import CELL_M, HALF_M, FloorGrid, Point, sampled
 
 NO_WALLS = np.zeros((0, 4))
 near = st.floats(-HALF_M / 2, HALF_M / 2)
