@@ -308,12 +308,17 @@ class Conversation:
             case Resolution.ROBOT_RETRY:
                 then = sentence(self._said_with.after_help())
             case Resolution.ROBOT_FINISH if not led_round or self._said_with.begins_anew:
-                then = sentence(self._said_with.going_on())
+                then = sentence(self._goes_on())
             case _:
                 then = Worded("", ())
         failed = failed and resolution is Resolution.ROBOT_RETRY
         close = self._close(reason, resolution, helped=helped, failed=failed)
         return [Remark(joined(said, then)), close]
+
+    def _goes_on(self) -> Worded:
+        if isinstance(self._at, HelpState) and not self._said_with.begins_anew:
+            return worded(self._at.goes_on)
+        return self._said_with.going_on()
 
     def _resolution_for(self, wanted: Resolution, helped: bool) -> Resolution:
         if helped and not self._outlook.helped_out:

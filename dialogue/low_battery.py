@@ -17,6 +17,7 @@ script = offer_script(
         unchanged="I feel current.",
         not_seen="I do not feel any current yet. Are you still plugging me in?",
         given_up="I still do not feel any current.",
+        goes_on="I go on once my battery holds enough",
         put_right={Expectation.CHARGED: Resolution.ROBOT_FINISH},
         denied=frozenset({Expectation.CHARGED}),
         placeable=False,

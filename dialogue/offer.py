@@ -32,7 +32,8 @@ class Offer:
     `failed` says how often the robot has failed at this itself; it then no longer asks for `help`.
     `request` says what to do and `not_seen` asks for it again, or `not_felt` where a basket feels
     something else, until it is `given_up`; once `help` is seen the robot says
-    `thanks` (or `unchanged`, where it was so before) and the dialogue closes with `resolution`.
+    `thanks` (or `unchanged`, where it was so before) and that it `goes_on`, and the dialogue closes
+    with `resolution`.
     `put_right`, `denied` and `may_be_mistaken` are a script's. `placeable`: there is an object
     that a helper could place instead; else who refuses is only asked whether it `leaves` it out.
     Of a leaf that handles nothing the robot says `without_object`, where nothing could help but
@@ -57,6 +58,7 @@ class Offer:
     not_felt: Mapping[Felt, str] = field(default_factory=dict)
     deeds_felt: Mapping[Felt, str] = field(default_factory=dict)
     given_up: str = "I still do not see that help."
+    goes_on: str = "I go on"
     without_object: str = ""
 
 
@@ -117,6 +119,7 @@ def _script(offer: Offer, patience: Patience, variants: Mapping[Sensed, Script])
                 given_up=offer.given_up,
                 deed=offer.deed,
                 deeds_felt=offer.deeds_felt,
+                goes_on=offer.goes_on,
             ),
             FAILED: last,
             **branch,

@@ -237,7 +237,8 @@ class HelpState:
     where the robot feels something else; `otherwise` names the state that follows a no, and
     `otherwise_effect` says what that will do. `given_up` is said once it has been asked about often
     enough. `deed` says in few words what the helper does (`Put {it} back`), and `deeds_felt` what
-    they do about what the robot feels instead.
+    they do about what the robot feels instead. `goes_on` says, as a clause, what the robot does
+    next that need not try again.
     """
 
     text: str
@@ -252,6 +253,7 @@ class HelpState:
     given_up: str = "I still do not see that help."
     deed: str = ""
     deeds_felt: Mapping[Felt, str] = field(default_factory=dict)
+    goes_on: str = "I go on"
 
 
 @dataclass(frozen=True, slots=True)

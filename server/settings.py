@@ -198,6 +198,13 @@ class Settings(BaseSettings):
         return self
 
     @model_validator(mode="after")
+    def _require_helpers_once(self) -> Self:
+        twice = next((each for each in self.helpers if self.helpers.count(each) > 1), None)
+        if twice is not None:
+            raise ValueError(f"'helpers' names '{twice}' more than once; once is enough")
+        return self
+
+    @model_validator(mode="after")
     def _require_certificate_and_key(self) -> Self:
         if (self.tls_certificate is None) != (self.tls_key is None):
             raise ValueError("'tls_certificate' and 'tls_key' go together: set both or neither")

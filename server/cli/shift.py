@@ -91,6 +91,7 @@ class Shift:
                 await self._over.wait()
                 telling.cancel()
                 happening.cancel()
+            self._tell_what_did_not_come(fleet.now_s)
             await self._close(service, view.id)
         return 0 if self._told.sum_up() else NOT_FINISHED
 
@@ -104,6 +105,12 @@ class Shift:
         async for event in _events(service):
             self._told.tell(event)
             self._end_if_over()
+
+    def _tell_what_did_not_come(self, now_s: float) -> None:
+        for number, each in enumerate(self._document.happenings):
+            if each.at_s > now_s:
+                what = f"'happenings.{number}' ({each.kind}, at {each.at_s:g} s)"
+                self._told.say(f"{what} did not come: everything was over before", now_s)
 
     def _end_if_over(self) -> None:
         if not self._to_come and not self._told.open:

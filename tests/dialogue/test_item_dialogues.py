@@ -94,7 +94,11 @@ def test_what_is_in_the_basket_of_another_robot_is_asked_for_there() -> None:
         ("item_not_given", Help.PUT_IN, "Thank you. I feel something new in my basket. I go on."),
         ("item_not_taken", Help.TAKE_OUT, "Thank you. I feel that my basket is lighter. I go on."),
         ("item_taken", Help.PUT_IN, "Thank you. My basket weighs what it did. I go on."),
-        ("low_battery", Help.CHARGE, "Thank you. I feel current. I go on."),
+        (
+            "low_battery",
+            Help.CHARGE,
+            "Thank you. I feel current. I go on once my battery holds enough.",
+        ),
     ],
 )
 def test_a_promise_is_watched_for_and_thanked_for_once_it_is_felt(

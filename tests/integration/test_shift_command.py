@@ -39,11 +39,16 @@ async def test_the_shipped_requests_are_met(tmp_path: Path) -> None:
 
 async def test_what_cannot_be_met_is_refused_with_when_it_could_be(tmp_path: Path) -> None:
     hasty = tmp_path / "requests.yaml"
-    hasty.write_text("requests: [{kind: go_to_room, name: r, place: F3/305, latest_s: 2}]\n")
+    hasty.write_text(
+        "requests: [{kind: go_to_room, name: r, place: F3/305, latest_s: 2}]\n"
+        "happenings: [{kind: robot_fails, at_s: 900}]\n"
+    )
     code, told, complaints = await run(tmp_path, str(SCENE), str(hasty))
     assert code == 1, complaints
     assert "refused: 'r' cannot be met" in told
     assert "it would be possible" in told
+    late = "'happenings.0' (robot_fails, at 900 s) did not come: everything was over before"
+    assert late in told
     assert told.splitlines()[-1].endswith("of 1 requests: 1 refused")
 
 

@@ -100,6 +100,7 @@ def test_loopback_needs_no_token(host: str) -> None:
         ("MEND_PROT", "1", "There is no setting MEND_PROT"),
         ("MEND_HELPERS", "anna", "cannot be read"),
         ("MEND_HELPERS", '[""]', "The setting 'helpers.0' is wrong: "),
+        ("MEND_HELPERS", '["anna", "ben", "anna"]', "'helpers' names 'anna' more than once"),
         ("MEND_CONFIG", "/nowhere.toml", "There is no settings file /nowhere.toml."),
     ],
 )
