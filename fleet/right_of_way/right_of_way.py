@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mend.maps.building.floor_grid import FloorGrid, Mask, Matrix, Point, sampled
 from mend.maps.building.building import Building, Floor
 from mend.maps.building.cabin import CABIN_M, stop_of
 from mend.maps.building.clearance import apart_m
 from mend.maps.building.crossing import crossed_by
+from mend.maps.building.floor_grid import FloorGrid, Mask, Matrix, Point, sampled
 
 MEETS_M = 0.8
 """Who stands this much farther ahead than two robots that touch is what a robot stands before."""

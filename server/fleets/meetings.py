@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mend.maps.building.floor_grid import Point, sampled
 from mend.fleet.right_of_way.right_of_way import RightOfWay, Standing, Yielding
 from mend.maps.building.building import Building
+from mend.maps.building.floor_grid import Point, sampled
 from mend.robots.base.body import BasePose
 from mend.robots.base.floor_ways import FloorWays
 from mend.robots.execution.command_error import CommandError

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from mend.maps.building.floor_grid import Point, sampled
 from mend.fleet.right_of_way.right_of_way import (
     AGAIN_S,
     APART_M,
@@ -20,6 +19,7 @@ from mend.fleet.right_of_way.right_of_way import (
 )
 from mend.maps.building.building import Building, BuildingDocument, Door, Floor, FloorPlace, Lane
 from mend.maps.building.clearance import distances_m
+from mend.maps.building.floor_grid import Point, sampled
 from mend.maps.building.random_building import random_building
 
 BASE = RADIUS_M, SPEED_M_S = 0.25, 1.0
