@@ -3,7 +3,7 @@
 import asyncio
 import logging
 from array import array
-from collections.abc import Awaitable, Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Mapping
 from datetime import datetime
 from functools import partial
 from typing import cast
@@ -16,8 +16,7 @@ from mend.errors import ConflictError, NotFoundError, UnreadableError, WrongInpu
 from mend.server.camera_picture import CameraPicture
 from mend.server.dialogues.answers import answer_source
 from mend.server.dialogues.attendance import Attendance
-from mend.server.dialogues.duty import Duty, duty_of
-from mend.server.dialogues.escalation import EscalationPolicy, handed_on
+from mend.server.dialogues.escalation import EscalationPolicy
 from mend.server.errors import BusyError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal
@@ -30,6 +29,7 @@ from mend.server.runtime.context import RunContext, RunSettings
 from mend.server.runtime.dialogue_driver import DialogueDriver
 from mend.server.runtime.dialogue_state import DialogueState
 from mend.server.runtime.failure import fail_run, why_it_stopped
+from mend.server.runtime.handing_on import HandingOn
 from mend.server.runtime.hardware import Hardware
 from mend.server.runtime.new_run import NewRun, NewRuns
 from mend.server.runtime.ports import LIVE, Poses, Preparation, RealRobots, Robots, Worlds
@@ -64,12 +64,6 @@ from mend.tasks.scene import Scene
 
 log = logging.getLogger(__name__)
 
-CHANGES_DUTY = (
-    ev.Prompt, ev.Answered, ev.Claimed, ev.Released, ev.HelpAwaited, ev.HelpVerified,
-    ev.HelpNotSeen, ev.PromiseTakenBack, ev.DialogueClosed, ev.RunResumed,
-)  # fmt: skip
-"""What changes what a helper has to do, or which questions may go on to another one."""
-
 
 class Runtime:
     """Implements `mend.server.runtime.service.RunService`."""
@@ -102,10 +96,11 @@ class Runtime:
         self._utc_now = utc_now
         self._poses = poses
         self._refusals = refusals or Refusals()
-        self._attendance = attendance or Attendance()
-        self._attendance.changed = self._hand_questions_on
         self._states = RunStates(journal, scripts)
         self._runs: dict[UUID, Run] = {}
+        self._handing_on = HandingOn(
+            policy, attendance or Attendance(), self._states.all_going_on, self._runs.values
+        )
         self._writing_json = asyncio.Lock()
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
         self._owners = RobotOwners(robots)
@@ -113,18 +108,6 @@ class Runtime:
         self._closing = False
         self._new_runs = NewRuns(preparation, worlds, utc_now, settings.limits)
         journal.trouble.watch(self._journal_troubled)
-
-    def _duty(self) -> Duty:
-        return duty_of(self._attendance.there, self._states.all_going_on())
-
-    def _hand_questions_on(self) -> None:
-        """Have every run look again whose question waits for somebody busy beside somebody idle."""
-        if not self._policy.helpers:
-            return
-        wanted = handed_on(self._policy, self._duty()).keys()
-        for run in tuple(self._runs.values()) if wanted else ():
-            if any(each.id in wanted for each in run.context.state.open_dialogues):
-                run.look_again()
 
     def _now_of(self, state: RunState) -> float:
         run = self._runs.get(state.id)
@@ -271,13 +254,8 @@ class Runtime:
             self._settings,
             self._utc_now,
             self._refusals,
-            self._helped,
+            self._handing_on.follow,
         )
-
-    def _helped(self, events: Sequence[ev.Event]) -> None:
-        """A run's state has followed these."""
-        if any(isinstance(each, CHANGES_DUTY) for each in events):
-            self._hand_questions_on()
 
     def _take_up(self, context: RunContext, hardware: Hardware) -> None:
         state = context.state
@@ -291,7 +269,7 @@ class Runtime:
             self._policy,
             _person_of(state, scenario) if hardware.simulated else None,
             partial(self._send_mail, state),
-            self._duty,
+            self._handing_on.duty,
         )
         cameras = CameraSource(
             self._robots.take_picture, self._robots.has_time, self._monotonic, asyncio.sleep
