@@ -8,7 +8,9 @@ for what they say. At the end it is told, by tenths of the probability of being 
 updates that was told and how often the robot was off then (by more than 1 m or 30 degrees).
 
     python benchmarks/localization_kidnapped.py [--maps FOLDER] [--map GHC4 ...] [--trials 50]
-        [--explained 0.6] [--people 1] [--first-seed 1] [--method enml ...] [--quick]
+        [--explained 0.6] [--people 1] [--first-seed 1] [--method enml ...] [--rough] [--quick]
+
+`--rough` drives with the second laser (`synthetic/rough_laser.py`), with which nothing was set.
 """
 
 # ruff: noqa: T201
@@ -20,6 +22,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
+from synthetic.rough_laser import RoughLaser
 from synthetic.settings import SceneSettings
 from synthetic.world import Scene, scene
 
@@ -158,6 +161,7 @@ def main() -> None:
     parser.add_argument("--people", type=float, default=1.0)
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--method", action="append", choices=list(METHODS))
+    parser.add_argument("--rough", action="store_true", help="the second laser")
     parser.add_argument("--quick", action="store_true", help="4 trials")
     given = parser.parse_args()
     methods = given.method or list(METHODS)
@@ -176,6 +180,7 @@ def main() -> None:
         explained=given.explained,
         people=given.people if changed else 0.0,
         removed=REMOVED if changed else 0.0,
+        rough=RoughLaser() if given.rough else None,
     )
     outcomes: dict[str, list[Outcome]] = {method: [] for method in methods}
     count = 4 if given.quick else given.trials

@@ -7,7 +7,9 @@ put right. All methods see the same scans and odometry, with their defaults. Int
 exact for Poisson counts; where nobody had to intervene, ">" stands before the whole distance.
 
     python benchmarks/localization_table1.py [--maps FOLDER] [--map GHC4 ...] [--explained 0.6 ...]
-        [--seeds 20] [--length 100] [--method enml ...] [--quick] [--plot FILE.svg]
+        [--seeds 20] [--length 100] [--method enml ...] [--rough] [--quick] [--plot FILE.svg]
+
+`--rough` drives with the second laser (`synthetic/rough_laser.py`), with which nothing was set.
 """
 
 # ruff: noqa: T201
@@ -21,6 +23,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.stats import beta, chi2
+from synthetic.rough_laser import RoughLaser
 from synthetic.settings import SceneSettings
 from synthetic.world import Scene, scene
 
@@ -176,6 +179,7 @@ def main() -> None:
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--length", type=float, default=100.0, help="metres of each drive")
     parser.add_argument("--method", action="append", choices=list(METHODS))
+    parser.add_argument("--rough", action="store_true", help="the second laser")
     parser.add_argument("--quick", action="store_true", help="1 seed, 25 m, 30 %% explained")
     parser.add_argument("--plot", type=Path, default=Path("out/localization_table1.svg"))
     given = parser.parse_args()
@@ -194,7 +198,11 @@ def main() -> None:
     for name, vector_map in vector_maps.items():
         for explained in given.explained:
             settings = SceneSettings(
-                length_m=given.length, explained=explained, removed=REMOVED, people=PEOPLE
+                length_m=given.length,
+                explained=explained,
+                removed=REMOVED,
+                people=PEOPLE,
+                rough=RoughLaser() if given.rough else None,
             )
             row = tallies[name, explained] = {method: Tally() for method in methods}
             for seed in range(given.first_seed, given.first_seed + given.seeds):

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from math import pi
 
+from synthetic.rough_laser import RoughLaser
+
 
 @dataclass(frozen=True, slots=True)
 class LaserSettings:
@@ -41,6 +43,8 @@ class SceneSettings:
     clearance_m: float = 0.4
     speed_m_per_s: float = 0.5
     laser: LaserSettings = field(default_factory=LaserSettings)
+    rough: RoughLaser | None = None
+    """How the laser errs; None: as `laser` says."""
     odometry: OdometrySettings = field(default_factory=OdometrySettings)
 
     def __post_init__(self) -> None:

@@ -14,6 +14,7 @@ from synthetic.free_space import free_space
 from synthetic.furniture import boxes
 from synthetic.path import drive
 from synthetic.people import people
+from synthetic.rough_laser import RoughDrive
 from synthetic.settings import (
     LaserSettings,
     OdometrySettings,
@@ -74,10 +75,17 @@ def scene(vector_map: VectorMap, settings: SceneSettings, seed: int) -> Scene:
             few = middle + 1
     count = few if settings.explained < 1.0 else 0
     motions = _odometry(way, settings.odometry, generator)
+    rough = None
+    if settings.rough is not None:
+        rough = RoughDrive.of(settings.rough, len(walls), way, generator)
     steps = tuple(
         LogStep(
             motions[index],
-            _scan(around(index, count), way[index], settings.laser, generator, float(time_s)),
+            _scan(
+                _ranges(index, around(index, count), way[index], settings, rough, generator),
+                settings.laser,
+                float(time_s),
+            ),
             way[index],
         )
         for index, time_s in enumerate(times_s)
@@ -86,25 +94,27 @@ def scene(vector_map: VectorMap, settings: SceneSettings, seed: int) -> Scene:
     return Scene(log, way, sides[:count].reshape(-1, 4), walls, explained(count))
 
 
-def _scan(
+def _ranges(
+    index: int,
     surroundings: Matrix,
     pose: Poses,
-    laser: LaserSettings,
+    settings: SceneSettings,
+    rough: RoughDrive | None,
     generator: np.random.Generator,
-    time_s: float,
-) -> Scan:
-    angles, increment = _beams(laser)
-    ranges, hit = cast(
-        surroundings, float(pose[0]), float(pose[1]), pose[2] + angles, laser.max_range_m
-    )
+) -> Matrix:
+    """What is measured at a step of the way; inf where nothing comes back."""
+    laser = settings.laser
+    angles, reach_m = _beams(laser)[0], laser.max_range_m
+    if rough is not None:
+        return rough.ranges(index, surroundings, pose, angles, reach_m, generator)
+    ranges, hit = cast(surroundings, float(pose[0]), float(pose[1]), pose[2] + angles, reach_m)
     noisy = np.maximum(ranges + generator.normal(0.0, laser.noise_m, laser.beams), 0.01)
-    return Scan(
-        np.where(hit >= 0, noisy, np.inf),
-        float(angles[0]),
-        increment,
-        laser.max_range_m,
-        time_s,
-    )
+    return np.where(hit >= 0, noisy, np.inf)
+
+
+def _scan(ranges_m: Matrix, laser: LaserSettings, time_s: float) -> Scan:
+    angles, increment = _beams(laser)
+    return Scan(ranges_m, float(angles[0]), increment, laser.max_range_m, time_s)
 
 
 def _beams(laser: LaserSettings) -> tuple[Matrix, float]:
