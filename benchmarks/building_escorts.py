@@ -30,6 +30,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 
 from building_bench import BuildingBench, made_up
 
+from mend.errors import MendError
 from mend.maps.building.building_file import read_building_file
 from mend.robots.base.behaviors.driving import CLEARS_M
 from mend.robots.link.messages import (
@@ -247,9 +248,12 @@ def main() -> int:
 def _scenes(options: argparse.Namespace) -> Iterator[tuple[str, int, Scene]]:
     seeds = range(options.first, options.first + options.buildings)
     for file in options.building:
-        building = read_building_file(file)
+        try:
+            scene = scene_of(read_building_file(file), "escorts", options.robots)
+        except MendError as error:
+            raise SystemExit(str(error)) from error
         for seed in seeds:
-            yield f"{file.stem}, seed {seed}", seed, scene_of(building, "escorts", options.robots)
+            yield f"{file.stem}, seed {seed}", seed, scene
     for seed in () if options.building else seeds:
         building = made_up(1 + seed % 4, 6 + seed % 15, seed)
         yield f"seed {seed}", seed, scene_of(building, "escorts", options.robots)
