@@ -95,7 +95,8 @@ class SimulatedClock:
         if self._world is not None:
             robot_time = self._world.heard(robot_time)
         if self._began_s is not None:
-            # Others may have let time pass until this robot was there.
+            # It may have said so a while ago; others may have let time pass until it was there.
+            robot_time = max(robot_time, self._began_s)
             self._now = max(self._now, self._offset + robot_time - self._began_s)
             self._began_s = None
         self._offset = self._now - robot_time

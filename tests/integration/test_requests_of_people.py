@@ -95,6 +95,28 @@ async def test_who_waits_for_a_moment_is_woken_at_it_though_the_only_robot_drive
         await until_over(service, {"room6"})
 
 
+async def test_a_run_that_begins_after_a_long_rest_is_dated_by_then(tmp_path: Path) -> None:
+    async with open_service(settings(tmp_path)) as service, asyncio.timeout(PATIENCE_S):
+        site = await open_office_with_fleet(service, "max", robots=2)
+        fleet = await service.fleets.fleet(site)
+        later = GoToRoom(name="room6", place="106", earliest_s=2000.0)
+        await service.fleets.submit(site, later, None)
+        while fleet.shown_s < 300.0:  # noqa: ASYNC110 - only poses tell how late it is
+            await asyncio.sleep(0.001)
+        since_s = fleet.shown_s
+        robot = next(each for each in fleet.dispatcher.fleet.robots if fleet.run_of(each) is None)
+        await fleet.operators.send(robot, "104", None)
+
+        def drives(events: list[ev.Event]) -> bool:
+            return any(isinstance(each, ev.StepStarted) for each in events)
+
+        events = await events_until(service, drives)
+    begun = next(each for each in events if isinstance(each, ev.RunStarted))
+    assert begun.at_s is not None
+    assert begun.at_s >= since_s
+    assert next(each for each in events if isinstance(each, ev.StepStarted)).time < 100.0
+
+
 @pytest.mark.slow(2)
 async def test_a_service_that_stopped_goes_on_with_what_its_robots_were_doing(
     tmp_path: Path,

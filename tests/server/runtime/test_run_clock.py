@@ -47,6 +47,15 @@ def test_what_passed_in_its_world_until_a_robot_was_there_has_passed_for_the_run
     assert (clock.now(), clock.to_robot(10.0)) == (2.0, 506.0), "the world was made anew"
 
 
+def test_a_robot_that_told_of_its_clock_long_ago_tells_no_run_that_time_has_passed() -> None:
+    world = WorldTime()
+    world.heard(20.0)
+    clock = SimulatedClock(0.0, world, began_s=220.0)
+    clock.align(20.0)
+    clock.observe(221.5)
+    assert clock.now() == 1.5
+
+
 @pytest.mark.parametrize("robot_time", [0.0, 17.8, 1000.1])
 async def test_promised_help_is_looked_for_whatever_the_robots_clock_says(
     robot_time: float,
