@@ -5,7 +5,6 @@ from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
-from uuid import UUID
 
 from mend.errors import ConflictError, RefusalError
 from mend.fleet.happenings import (
@@ -92,14 +91,16 @@ class Shift:
                 telling.cancel()
                 happening.cancel()
             self._tell_what_did_not_come(fleet.now_s)
-            await self._close(service, view.id)
+            await self._close(service, fleet)
         return 0 if self._told.sum_up() else NOT_FINISHED
 
-    async def _close(self, service: "Service", site: UUID) -> None:
-        """Robots that still make way do so no more."""
-        await service.fleets.close_site(site)
+    async def _close(self, service: "Service", fleet: "FleetAtWork") -> None:
+        """Robots that still make way, or charge, do so no more."""
+        await fleet.break_off_errands()
+        # One that has not come to rest yet keeps the site, which ends with the service then.
         with suppress(ConflictError):
-            await service.sites.close_site(site, local_author())
+            await service.fleets.close_site(fleet.site)
+            await service.sites.close_site(fleet.site, local_author())
 
     async def _tell(self, service: "Service") -> None:
         async for event in _events(service):

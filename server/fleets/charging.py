@@ -15,7 +15,8 @@ LEAVES_AT = 0.5
 """Who is to do something leaves its charger once it holds as much."""
 
 LOOKS_AGAIN_S = 10.0
-"""So often it is looked whether who charges and holds enough has something to do by then."""
+"""So often it is looked whether who charges and holds enough has something to do by then, and
+whether a charger is free for who holds little."""
 AGAIN_S = 600.0
 """Who could not charge, or had something to do instead, does not try again for so long."""
 
@@ -37,15 +38,21 @@ class Charging:
         self._again_s: dict[str, float] = {}
         self._looks_s: dict[str, float] = {}
 
-    def to_send(self, free: Iterable[str], now_s: float) -> list[tuple[str, str]]:
-        """Which of the robots that nobody has now are to go to which charger."""
+    def to_send(
+        self, free: Iterable[str], errands: Iterable[Errand], now_s: float
+    ) -> list[tuple[str, str]]:
+        """Which of the robots that nobody has now are to go to which charger, if no other one is on
+        its way there in one of the `errands`."""
         shares = {
             robot: share
             for robot in free
             if now_s >= self._again_s.get(robot, 0.0)
             if (share := self._battery(robot)) is not None
         }
-        return list(who_charges(self._dispatcher, shares, self._reachable)) if shares else []
+        if not shares:
+            return []
+        taken = {errand.place for errand in errands}
+        return list(who_charges(self._dispatcher, shares, self._reachable, taken))
 
     def enough(self, going: Iterable[Errand], now_s: float) -> list[Errand]:
         """Those that are to be broken off: their robots charge, and have something to do."""
@@ -59,12 +66,15 @@ class Charging:
         due = {leg.robot for leg in self._dispatcher.legs_to_begin(now_s)}
         return [errand for errand in charged if errand.robot in due]
 
-    def may_leave(self, robot: str, share: float | None, now_s: float) -> bool:
-        """Whether it is time to look if a robot that charges has enough; now and then, if so."""
-        if (share or 0.0) < LEAVES_AT or now_s < self._looks_s.get(robot, 0.0):
+    def is_to_look(self, robot: str, share: float | None, now_s: float, *, charges: bool) -> bool:
+        """Whether it is time to look if a robot that `charges` has enough, or if one that nobody
+        has is to charge; now and then, if so."""
+        if share is None or now_s < self._looks_s.get(robot, 0.0):
+            return False
+        if share < LEAVES_AT if charges else share >= IDLE_BELOW:
             return False
         self._looks_s[robot] = now_s + LOOKS_AGAIN_S
-        return True
+        return charges or now_s >= self._again_s.get(robot, 0.0)
 
     def could_not(self, robot: str, now_s: float) -> None:
         """It has not charged until it was full."""
@@ -72,20 +82,24 @@ class Charging:
 
 
 def who_charges(
-    dispatcher: Dispatcher, shares: Mapping[str, float], reachable: Container[str]
+    dispatcher: Dispatcher,
+    shares: Mapping[str, float],
+    reachable: Container[str],
+    taken: Container[str] = (),
 ) -> Iterator[tuple[str, str]]:
     """Which robot goes to which charger: the nearest that is free.
 
     `shares`: what the batteries of those hold that nobody has now, where it is known, in [0, 1].
-    `reachable`: the places that robots can be sent to, as `FLOOR/PLACE`. Who has things aboard
-    brings them first, and who finds no charger free goes on.
+    `reachable`: the places that robots can be sent to, as `FLOOR/PLACE`; `taken`: those to which
+    others are on their way without a leg. Who has things aboard brings them first, and who finds no
+    charger free goes on.
     """
     fleet, building = dispatcher.fleet, dispatcher.building
     stops, places = fleet.stops(), [each.name for each in building.graph.places]
     stands = {name: places[each.place] for name, each in fleet.robots.items()}
     wanted = {stop.place for left in stops.values() for stop in left}
     chargers = [each for each in building.of_kind(PlaceKind.CHARGER) if each in reachable]
-    free = {each for each in chargers if each not in wanted}
+    free = {each for each in chargers if each not in wanted and each not in taken}
     for name, share in sorted(shares.items(), key=lambda each: each[1]):
         if not fleet.robots[name].works or share >= _least(dispatcher, name):
             continue

@@ -19,6 +19,8 @@ from mend.server.sites.site import Site
 log = logging.getLogger(__name__)
 _LONGEST = 500
 
+BROKEN_OFF = "it was broken off"
+
 
 class Errands:
     """At most one of each robot, in a run of its own; meanwhile no leg of that robot begins."""
@@ -40,7 +42,7 @@ class Errands:
         self._going = {each.robot: each for each in going}
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._unwanted: set[UUID] = set()
-        """The runs that were broken off before they had begun."""
+        """The runs that were broken off, maybe before they had begun."""
 
     @property
     def going(self) -> Mapping[str, Errand]:
@@ -119,6 +121,8 @@ class Errands:
         if not view.status.ended:
             # The service stops, and goes on with it at its next start.
             await asyncio.Event().wait()
+        if view.status is RunStatus.ABORTED and errand.run in self._unwanted:
+            return BROKEN_OFF
         if view.result is None:
             return str(view.status)
         # A leaf that somebody had left out counts as done for the run, but nobody has done it.
@@ -127,11 +131,11 @@ class Errands:
 
     async def break_off(self, errand: Errand) -> None:
         """It is not wanted any more."""
+        self._unwanted.add(errand.run)
         try:
             await self._runs.abort(errand.run)
         except RefusalError as error:
             log.info("the errand of %s was over, or not begun: %s", errand.robot, error)
-            self._unwanted.add(errand.run)
 
     def _end(self, errand: Errand, at: str) -> None:
         """Its robot is at a place, which plans know from now on."""

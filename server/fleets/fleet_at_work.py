@@ -162,7 +162,8 @@ class FleetAtWork:
             for robot, to in self._held_cabins.to_send_out(free, self.now_s):
                 self._errands.send(robot, to, None)
             free = [each for each in free if each not in self._errands.going]
-            for robot, charger in self._charging.to_send(free, self.now_s):
+            going = self._errands.going.values()
+            for robot, charger in self._charging.to_send(free, going, self.now_s):
                 self._errands.send(robot, charger, None, charges=True)
             unwanted = await asyncio.to_thread(self._decide, self.now_s)
             asked, self._asked_aside = self._asked_aside, {}
@@ -306,9 +307,11 @@ class FleetAtWork:
         self._meeting_watch.take(robot, poses)
         errand = self._errands.going.get(robot)
         charges = errand is not None and errand.charges
-        leaves = charges and self._charging.may_leave(robot, poses.battery, poses.time)
+        looks = (charges or self._is_free(robot)) and self._charging.is_to_look(
+            robot, poses.battery, poses.time, charges=charges
+        )
         here = in_scene(self._site.frames[robot], poses.base)[:3]
-        if self._held_cabins.saw(robot, here, poses.time) or leaves:
+        if self._held_cabins.saw(robot, here, poses.time) or looks:
             self._book.changed.set()
 
     async def _have_met(self, decided: Yielding, place: str | None) -> None:
@@ -377,6 +380,13 @@ class FleetAtWork:
         """What was asked for is not wanted any more. Raises as `Dispatcher.cancel`."""
         async with self._book.told(author, name):
             return self.dispatcher.cancel(name, self.now_s)
+
+    async def break_off_errands(self) -> None:
+        """No robot goes anywhere without a leg; over once those have ended that had begun."""
+        for errand in list(self._errands.going.values()):
+            await self._errands.break_off(errand)
+        if tasks := self._errands.tasks:
+            await asyncio.wait(tasks)
 
     async def have_answered(self, answers: Literal["live", "yes", "late"]) -> None:
         """Who answers robots in the legs that begin from now on."""

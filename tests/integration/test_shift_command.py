@@ -7,6 +7,17 @@ import yaml
 from forked_mend import mend_command
 from sampled import sample
 
+from mend.maps.building.building import (
+    Building,
+    BuildingDocument,
+    Floor,
+    FloorPlace,
+    Lane,
+    PlaceKind,
+)
+from mend.sim.building.scene import scene_of
+from mend.tasks.scene import Base
+
 EXAMPLES = Path(__file__).parents[2] / "examples" / "buildings"
 SCENE, REQUESTS = EXAMPLES / "scenes" / "office_at_work.yaml", EXAMPLES / "requests.yaml"
 ALL_NAMES = ("mail", "keys", "lunch", "guest", "visit")
@@ -50,6 +61,36 @@ async def test_what_cannot_be_met_is_refused_with_when_it_could_be(tmp_path: Pat
     late = "'happenings.0' (robot_fails, at 900 s) did not come: everything was over before"
     assert late in told
     assert told.splitlines()[-1].endswith("of 1 requests: 1 refused")
+
+
+async def test_a_shift_is_summed_up_and_reported_though_a_robot_still_charges(
+    tmp_path: Path,
+) -> None:
+    corridor = Floor(
+        places={
+            "charger": FloorPlace(x=0.0, y=0.0, kind=PlaceKind.CHARGER),
+            "1": FloorPlace(x=60.0, y=0.0, kind=PlaceKind.ROOM),
+            "2": FloorPlace(x=64.0, y=0.0, kind=PlaceKind.ROOM),
+        },
+        lanes=(Lane(between=("charger", "1")), Lane(between=("1", "2"))),
+        walls=((-2.0, -1.5, 66.0, -1.5), (-2.0, 1.5, 66.0, 1.5)),
+    )
+    made = scene_of(Building(BuildingDocument(building="b", floors={"F1": corridor})), "s", 2)
+    away = {f"robot{n}": Base(x=56.0 + 4.0 * n, y=0.0) for n in (1, 2)}
+    scene, wanted, report = (tmp_path / each for each in ("s.yaml", "wanted.yaml", "report.html"))
+    scene.write_text(
+        made.model_copy(update={"robots": away}).model_dump_json(exclude_defaults=True)
+    )
+    # Meanwhile the other one has less than it is to hold, and a long way to the charger.
+    tell = "{kind: deliver_message, name: tell, place: '1', message: Tea, earliest_s: 125}"
+    wanted.write_text(f"requests: [{tell}]\n")
+    little = ("--option", "localizer=exact", "--option", "battery_wh=3")
+    arguments = (str(scene), str(wanted), *little, "--report", str(report))
+    code, told, complaints = await run(tmp_path, *arguments)
+    assert code == 0, complaints
+    assert " begins to charge" in told
+    assert told.splitlines()[-2].endswith("of 1 requests: 1 done")
+    assert report.exists()
 
 
 async def test_a_wrong_file_is_told_with_its_line(tmp_path: Path) -> None:

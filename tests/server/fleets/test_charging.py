@@ -24,6 +24,7 @@ from mend.maps.building.building import (
 )
 from mend.robots.link.messages import IDENTITY, Poses
 from mend.server.fleets.charging import BUSY_BELOW, IDLE_BELOW, LEAVES_AT, who_charges
+from mend.server.fleets.errands import BROKEN_OFF
 from mend.server.fleets.fleet_at_work import FleetAtWork
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.journal import events as ev
@@ -64,6 +65,12 @@ def test_who_stands_at_a_charger_charges_there() -> None:
     of = Dispatcher(building(), fleet_of("a", "b"))
     assert going(of, {"r0": 0.3}) == [("r0", "f/a")]
     assert going(of, {"r1": 0.3}) == [("r1", "f/e")], "where another one stands is not free"
+
+
+def test_a_charger_that_somebody_is_on_the_way_to_is_not_free() -> None:
+    of = Dispatcher(building(), fleet_of("b", "d"))
+    assert list(who_charges(of, {"r0": 0.3}, EVERYWHERE, {"f/a"})) == [("r0", "f/e")]
+    assert list(who_charges(of, {"r0": 0.3}, EVERYWHERE, {"f/a", "f/e"})) == []
 
 
 def test_who_finds_no_charger_free_goes_on() -> None:
@@ -191,6 +198,42 @@ async def test_the_only_robot_leaves_its_charger_for_what_has_become_due_meanwhi
             work.fleet.saw("r0", said)
             await asyncio.sleep(0)
         assert (await work.runs.nth(2)).parameters["place"] == "c"
+
+
+async def test_who_holds_little_by_now_charges_though_nothing_else_happens() -> None:
+    async with charging("b") as work:
+        work.site.batteries["r0"] = IDLE_BELOW
+        work.fleet.start()
+        await until(lambda: not work.fleet._book.changed.is_set())
+        for time_s, share in ((5.0, IDLE_BELOW), (6.0, IDLE_BELOW - 0.01)):
+            assert not work.fleet.errands
+            work.site.batteries["r0"] = share
+            said = Poses(time=time_s, tool=IDENTITY, opening_m=0.0, battery=share)
+            work.fleet.saw("r0", said)
+            await asyncio.sleep(0)
+        assert (await work.runs.nth(1)).behavior == "charge"
+
+
+async def test_nobody_is_sent_to_a_charger_that_another_one_is_on_its_way_to() -> None:
+    async with charging("b", "c") as work:
+        work.site.batteries |= {"r0": 0.3, "r1": 0.9}
+        work.fleet.start()
+        await work.runs.nth(1)
+        work.site.batteries["r1"] = 0.3
+        work.site.changed()
+        assert (await work.runs.nth(2)).parameters == {"place": "e"}
+        assert [each.place for each in work.fleet.errands.values()] == ["f/a", "f/e"]
+
+
+async def test_who_leaves_its_charger_is_not_said_to_have_been_stopped_by_a_person() -> None:
+    async with charging("b") as work:
+        work.site.batteries["r0"] = 0.3
+        work.fleet.start()
+        await work.runs.nth(1)
+        await work.fleet.break_off_errands()
+        assert not work.fleet.errands
+        told = [e for e in await work.journal.read(0, 1000) if isinstance(e, ev.ErrandEnded)]
+        assert [(each.came, each.reason) for each in told] == [(False, BROKEN_OFF)]
 
 
 async def test_who_could_not_charge_does_not_try_it_again_at_once() -> None:
