@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mend.maps.building.building import Building, LaneCrossing
+from mend.maps.building.clearance import distances_m
 from mend.maps.building.right_across import right_across
 from mend.sim.building.doors import WorldDoors
 
@@ -53,6 +54,10 @@ class Barriers:
         """What stands across corridors of a floor (n, 4)."""
         there = [each for on, each in self._across.values() if on == floor]
         return np.vstack([np.zeros((0, 4)), *there])
+
+    def is_near(self, floor: str, x: float, y: float, within_m: float) -> bool:
+        """Whether something stands across a corridor so near to a point."""
+        return bool(distances_m(np.array([[x, y]]), self.segments(floor))[0] < within_m)
 
     def snapshot(self) -> list[Lane]:
         """The lanes that are barred."""

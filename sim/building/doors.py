@@ -92,3 +92,10 @@ class WorldDoors(Mapping[str, WorldDoor]):
             return None
         away_m, number = min(may_open)
         return away_m, doors[number]
+
+    def is_kept_shut(self, floor: str, x: float, y: float, within_m: float, time_s: float) -> bool:
+        """Whether a door so near to a point is shut, and nobody may open it now."""
+        return any(
+            each.is_shut and not each.may_be_passed(time_s) and each.distance_m(x, y) < within_m
+            for each in self._on.get(floor, [])
+        )

@@ -128,7 +128,16 @@ class Interveners:
         opened = self._open_for_who_waits()
         pressed = self._press_for_who_waits()
         done = bool(stepped_aside) or opened or pressed or self._push_apart()
-        return "" if done or self._push_out() else "nothing is in the way of any robot"
+        return "" if done or self._push_out() else self._why_in_vain()
+
+    def _why_in_vain(self) -> str:
+        """Why whoever wants to help a robot on has done nothing."""
+        standing = [(e.at.floor, e.at.x, e.at.y) for e in self.crowd.robots if self._stands(e)]
+        if any(self.doors.is_kept_shut(*at, _AT_DOOR_M, self.time_s()) for at in standing):
+            return "the door that a robot stands before is locked, or not to be opened by now"
+        if any(self.barriers.is_near(*at, _ASKED_M) for at in standing):
+            return "what is right across a robot's way is not to be taken away yet"
+        return "nothing is in the way of any robot"
 
     def _push_out(self) -> bool:
         """Push robots out of cabins in which they stand, and want to ride nowhere."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from building_bench import BuildingBench
 
-from mend.maps.building.building import Building, BuildingDocument
+from mend.maps.building.building import Building, BuildingDocument, DoorOpening
 from mend.maps.building.clearance import apart_m
 from mend.maps.building.random_building import random_building
 from mend.sim.building.barriers import Barriers
@@ -92,23 +92,51 @@ def test_what_is_no_lane_or_barred_already_or_free_is_refused() -> None:
         made.bar((LANES[0][1], LANES[0][0]))
 
 
-def test_nothing_is_put_where_a_robot_stands() -> None:
-    document = BuildingDocument.model_validate(
-        {
-            "building": "hall",
-            "floors": {
-                "F1": {
-                    "places": {"a": {"x": 1.0, "y": 1.0}, "b": {"x": 5.0, "y": 1.0}},
-                    "lanes": ({"between": ("a", "b")},),
-                    "walls": ((0, 0, 6, 0), (6, 0, 6, 2), (6, 2, 0, 2), (0, 2, 0, 0)),
-                }
-            },
-        }
-    )
+def hall(at_x: float, **more: object) -> BuildingBench:
+    """A robot in a corridor between two places."""
+    floor = {
+        "places": {"a": {"x": 1.0, "y": 1.0}, "b": {"x": 5.0, "y": 1.0}},
+        "lanes": ({"between": ("a", "b")},),
+        "walls": ((0, 0, 6, 0), (6, 0, 6, 2), (6, 2, 0, 2), (0, 2, 0, 0)),
+        **more,
+    }
+    document = BuildingDocument.model_validate({"building": "hall", "floors": {"F1": floor}})
     scene = scene_of(Building(document), "hall", 1)
-    middle = {"robot": Base(x=3.0, y=1.0)}
-    bench = BuildingBench(scene.model_copy(update={"robots": middle}))
-    bar = Intervention(act=Act.BAR, between=("F1/a", "F1/b"))
-    assert bench.world.intervene(bar) == "somebody is in the way between F1/a and F1/b"
-    clear = Intervention(act=Act.CLEAR, between=("F1/a", "F1/b"))
-    assert bench.world.intervene(clear) == "nothing bars the way between F1/a and F1/b"
+    standing = scene.model_copy(update={"robots": {"robot": Base(x=at_x, y=1.0)}})
+    return BuildingBench(standing, shut_doors=1.0)
+
+
+BAR = Intervention(act=Act.BAR, between=("F1/a", "F1/b"))
+CLEAR = Intervention(act=Act.CLEAR, between=("F1/a", "F1/b"))
+HELP = Intervention(act=Act.RELEASE)
+
+
+def test_nothing_is_put_where_a_robot_stands() -> None:
+    bench = hall(3.0)
+    assert bench.world.intervene(BAR) == "somebody is in the way between F1/a and F1/b"
+    assert bench.world.intervene(CLEAR) == "nothing bars the way between F1/a and F1/b"
+
+
+def test_who_helps_is_told_that_what_is_right_across_stays_there_and_not_that_nothing_is() -> None:
+    bench = hall(2.0)
+    assert bench.world.intervene(HELP) == "nothing is in the way of any robot"
+    assert not bench.world.intervene(BAR)
+    told = "what is right across a robot's way is not to be taken away yet"
+    assert bench.world.intervene(HELP) == told
+
+
+@pytest.mark.parametrize(
+    "hours",
+    [
+        pytest.param((), id="somebody has locked it"),
+        pytest.param(((100.0, 200.0),), id="it is none of its hours"),
+    ],
+)
+def test_who_helps_is_told_that_a_door_stays_shut(hours: tuple[tuple[float, float], ...]) -> None:
+    walls = ((0, 0, 6, 0), (6, 0, 6, 2), (6, 2, 0, 2), (0, 2, 0, 0), (3, 0, 3, 0.4), (3, 1.6, 3, 2))
+    door = {"posts": ((3.0, 0.4), (3.0, 1.6)), "opens": DoorOpening.PEOPLE, "open_s": hours}
+    bench = hall(2.3, walls=walls, doors={"d": door})
+    if not hours:
+        assert not bench.world.intervene(BAR)
+    told = "the door that a robot stands before is locked, or not to be opened by now"
+    assert bench.world.intervene(HELP) == told
