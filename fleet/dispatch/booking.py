@@ -47,7 +47,9 @@ class Booking:
         status = self._status(item, about_to)
         if item.put_off is not None:
             since_s = self.put_off_since_s
-            self.reason, self.put_off_since_s = item.put_off, now_s if since_s is None else since_s
+            self.put_off_since_s = now_s if since_s is None else since_s
+            # Why it goes back, or fails, stays true however long that takes.
+            self.reason = self.reason if item.returns or self.fails else item.put_off
         elif self.put_off_since_s is not None:
             goes_on = item.open and not item.returns and not self.fails
             self.reason = None if goes_on else self.reason

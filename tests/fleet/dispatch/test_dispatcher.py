@@ -433,6 +433,21 @@ def test_request_waits_while_no_robot_works_and_not_for_ever() -> None:
     assert (view.status, view.reason) == (RequestStatus.FAILED, "no robot works")
 
 
+def test_what_goes_back_as_it_was_cancelled_is_not_said_to_lack_a_robot_in_the_end() -> None:
+    dispatcher = dispatcher_for("a")
+    dispatcher.submit(asked(), 0.0)
+    make_leg(dispatcher, 0.0, 15.0)
+    dispatcher.cancel("tea", 16.0)
+    dispatcher.robot_failed("r0", None, "a squeak", 17.0)
+    assert status(dispatcher) is RequestStatus.RETURNING
+    dispatcher.robot_back("r0", "c", 100.0)
+    taken_out = LegEnd(outcome=LegOutcome.DONE, reason="it was taken out of the basket")
+    make_leg(dispatcher, 100.0, 20.0, taken_out)
+    view = dispatcher.view("tea")
+    said = "it was cancelled; it was taken out of the basket"
+    assert (view.status, view.reason) == (RequestStatus.CANCELLED, said)
+
+
 def test_request_that_waited_is_booked_when_a_robot_is_back() -> None:
     dispatcher = dispatcher_for("a")
     dispatcher.submit(asked(), 0.0)
