@@ -36,6 +36,8 @@ class FailingRobot:
         self._fleet, self._happening, self._beside = fleet, happening, beside
         self._named = robot
         self._failed: str | None = None
+        self.looks = False
+        """Whether one is looked for that brings something."""
 
     async def begin(self) -> None:
         """Raises `ConflictError` where it is out of service already."""
@@ -57,20 +59,27 @@ class FailingRobot:
 
     async def _have_one_fail(self) -> None:
         """Raises `ConflictError` where no robot has brought anything until it is to work again."""
+        self.looks = True
         since_s, until_s = self._happening.at_s, self._happening.until_s
         last_s = since_s + BRINGS_WITHIN_S if until_s is None else until_s
         while self._fleet.now_s < last_s:
             robot = await self._fleet.read(partial(who_brings, out=self._fleet.out_of_service))
             if robot is not None:
+                self.looks = False
                 await self._take_out(robot)
                 if until_s is not None and self._fleet.now_s >= until_s:
                     # Its time to work again came while it was being taken out.
                     await self.end()
                 return
             await self._fleet.wait_until(min(self._fleet.now_s + LOOKS_EVERY_S, last_s))
-        raise ConflictError(
-            f"no robot fails ({self._happening.reason}): from {since_s:g} to {last_s:g} s none was "
-            "on a long way with anything"
+        self.looks = False
+        raise ConflictError(self.why_none(last_s))
+
+    def why_none(self, until_s: float) -> str:
+        """Why no robot has failed until a moment (s) at which one was still looked for."""
+        return (
+            f"no robot fails ({self._happening.reason}): from {self._happening.at_s:g} to "
+            f"{until_s:g} s none was on a long way with anything"
         )
 
 

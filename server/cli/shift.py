@@ -1,7 +1,7 @@
 """A shift in a building: a site of its own, the requests of a file, and what happens meanwhile."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Mapping
 from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
@@ -10,6 +10,7 @@ from mend.errors import ConflictError, RefusalError
 from mend.fleet.happenings import (
     Cancelled,
     Happening,
+    Lasting,
     NobodyAnswers,
     RobotFails,
     WayBarred,
@@ -21,6 +22,7 @@ from mend.server.cli.local_user import local_author
 from mend.server.cli.run_request import checked_request
 from mend.server.cli.shift_timeline import Deed, Due, Timeline
 from mend.server.cli.shift_transcript import ShiftTranscript
+from mend.server.cli.silence import Silence
 from mend.server.documents import DocumentKind
 from mend.server.fixed_documents import GivenFiles
 from mend.server.journal import events as ev
@@ -68,6 +70,7 @@ class Shift:
         self._told = ShiftTranscript([each.name for each in document.requests])
         self._to_come = len(document.requests)
         self._over = asyncio.Event()
+        self._failing: list[FailingRobot] = []
 
     @property
     def ended(self) -> Mapping[str, str]:
@@ -112,6 +115,9 @@ class Shift:
             if each.at_s > now_s:
                 what = f"'happenings.{number}' ({each.kind}, at {each.at_s:g} s)"
                 self._told.say(f"{what} did not come: everything was over before", now_s)
+        for failing in self._failing:
+            if failing.looks:
+                self._told.say(failing.why_none(now_s), now_s)
 
     def _end_if_over(self) -> None:
         if not self._to_come and not self._told.open:
@@ -128,8 +134,18 @@ class Shift:
             Due(asked_s.get(each.name, 0.0), partial(self._ask, service, fleet, each))
             for each in self._document.requests
         ]
+        silence = Silence(fleet.have_answered)
         for happening in self._document.happenings:
-            due += _moments(happening, fleet, robots, timeline.beside)
+            match happening:
+                case Cancelled(at_s=at_s, request=request):
+                    due.append(Due(at_s, partial(_cancel, fleet, request)))
+                case RobotFails(robot=named):
+                    robot = None if named is None else robots.get(named, named)
+                    failing = FailingRobot(fleet, happening, robot, timeline.beside)
+                    self._failing.append(failing)
+                    due += _lasting(happening, failing.begin, failing.end)
+                case NobodyAnswers():
+                    due += _lasting(happening, silence.begin, silence.end)
         await timeline.run(due)
 
     async def _ask(self, service: "Service", fleet: "FleetAtWork", request: "AnyRequest") -> None:
@@ -158,32 +174,14 @@ def _interventions(happenings: tuple[Happening, ...]) -> list[ScriptedInterventi
     return done
 
 
-def _moments(
-    happening: Happening,
-    fleet: "FleetAtWork",
-    robots: Mapping[str, str],
-    beside: Callable[[Deed], None],
-) -> list[Due]:
+def _lasting(happening: Lasting, begin: Deed, end: Deed) -> list[Due]:
     """What is to be told to the fleet, and when."""
-    author = local_author()
-    match happening:
-        case WayBarred() | WrongFloor():
-            return []
-        case Cancelled(at_s=at_s, request=request):
-
-            async def cancel() -> None:
-                await fleet.cancel(request, author)
-
-            return [Due(at_s, cancel)]
-        case RobotFails(robot=named):
-            robot = None if named is None else robots.get(named, named)
-            failing = FailingRobot(fleet, happening, robot, beside)
-            begin, end = failing.begin, failing.end
-        case NobodyAnswers():
-            begin = partial(fleet.have_answered, "late")
-            end = partial(fleet.have_answered, "yes")
-    over = [] if happening.until_s is None else [Due(happening.until_s, end)]
+    over = [] if happening.until_s is None else [Due(happening.until_s, end, ends=True)]
     return [Due(happening.at_s, begin), *over]
+
+
+async def _cancel(fleet: "FleetAtWork", request: str) -> None:
+    await fleet.cancel(request, local_author())
 
 
 async def _events(service: "Service") -> AsyncIterator[ev.Event]:

@@ -11,14 +11,17 @@ Deed = Callable[[], Awaitable[None]]
 
 @dataclass(frozen=True, slots=True)
 class Due:
-    """Something to be done at a moment of the site's clock."""
+    """Something to be done at a moment of the site's clock; `ends`: it ends what went on so far."""
 
     at_s: float
     do: Deed
+    ends: bool = False
 
 
 class Timeline:
     """Does what is due, one after the other by their moments; what cannot be done is told.
+
+    What ends at a moment has ended before what begins at it.
 
     As one of them may need what an earlier one did (who cancels something has asked for it), each
     is over before the next begins. So nothing that is due may wait for long: that goes `beside`.
@@ -34,7 +37,7 @@ class Timeline:
     async def run(self, due: Iterable[Due]) -> None:
         """Do it all; over when also what went on `beside` is."""
         async with asyncio.TaskGroup() as self._waiting:
-            for each in sorted(due, key=lambda each: each.at_s):
+            for each in sorted(due, key=lambda each: (each.at_s, not each.ends)):
                 await self._wait_until(each.at_s)
                 await self._tried(each.do)
 

@@ -83,12 +83,14 @@ async def test_a_shift_is_summed_up_and_reported_though_a_robot_still_charges(
     )
     # Meanwhile the other one has less than it is to hold, and a long way to the charger.
     tell = "{kind: deliver_message, name: tell, place: '1', message: Tea, earliest_s: 125}"
-    wanted.write_text(f"requests: [{tell}]\n")
+    fails = "{kind: robot_fails, at_s: 5}"
+    wanted.write_text(f"requests: [{tell}]\nhappenings: [{fails}]\n")
     little = ("--option", "localizer=exact", "--option", "battery_wh=3")
     arguments = (str(scene), str(wanted), *little, "--report", str(report))
     code, told, complaints = await run(tmp_path, *arguments)
     assert code == 0, complaints
     assert " begins to charge" in told
+    assert "no robot fails (it does not work): from 5 to " in told
     assert told.splitlines()[-2].endswith("of 1 requests: 1 done")
     assert report.exists()
 

@@ -8,6 +8,7 @@ from mend.errors import ConflictError
 from mend.fleet.happenings import RobotFails
 from mend.server.cli.failing_robot import FailingRobot
 from mend.server.cli.shift_timeline import Due, Timeline
+from mend.server.cli.silence import Silence
 
 
 class PretendFleet:
@@ -61,7 +62,7 @@ class PretendFleet:
             failing = FailingRobot(cast(Any, self), each, each.robot, timeline.beside)
             due.append(Due(each.at_s, failing.begin))
             if each.until_s is not None:
-                due.append(Due(each.until_s, failing.end))
+                due.append(Due(each.until_s, failing.end, ends=True))
         await timeline.run(due)
 
     async def _ask(self, at_s: float) -> None:
@@ -101,6 +102,29 @@ async def test_what_failed_already_neither_fails_again_nor_works_sooner() -> Non
     fleet = PretendFleet()
     await fleet.carry_out([fails(10.0, 90.0, "r1"), fails(20.0, 40.0, "r1")])
     assert fleet.told == [(10.0, "r1 fails"), (20.0, "r1 is out already"), (90.0, "r1 works")]
+
+
+async def test_what_ends_as_something_begins_ends_first_however_both_are_listed() -> None:
+    fleet = PretendFleet()
+    await fleet.carry_out([fails(20.0, 30.0, "r1"), fails(10.0, 20.0, "r1")])
+    assert fleet.told == [
+        (10.0, "r1 fails"),
+        (20.0, "r1 works"),
+        (20.0, "r1 fails"),
+        (30.0, "r1 works"),
+    ]
+
+
+async def test_people_answer_again_when_the_last_of_several_spans_is_over() -> None:
+    answers: list[str] = []
+
+    async def have_answered(how: str) -> None:
+        answers.append(how)
+
+    silence = Silence(have_answered)
+    for deed in (silence.begin, silence.begin, silence.end, silence.end):
+        await deed()
+    assert answers == ["late", "late", "yes"]
 
 
 async def test_what_was_to_happen_long_ago_comes_in_its_order() -> None:
