@@ -1,12 +1,12 @@
 """A world that is listed where what it needs is not installed, and loaded once it is used."""
 
-import importlib
 import importlib.util
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import BaseModel
 
+from mend.sim.checked_scenes import checked_scene, made_by
 from mend.sim.world import WorldSetup, WorldUnavailableError
 from mend.tasks.definition import BehaviorNode, GoalNode
 from mend.tasks.scene import Scene
@@ -57,8 +57,8 @@ class ListedWorld:
         self, scene: Scene, nodes: Sequence[GoalNode | BehaviorNode]
     ) -> list[SceneProblem]:
         """What keeps all robots from doing the leaves among `nodes` in a scene."""
-        problems: list[SceneProblem] = self._made_by().check_scene(scene, nodes)
-        return problems
+        self.check_available()
+        return checked_scene(self.maker, scene, nodes)
 
     def train_colors(self, scene: Scene) -> "ColorModel":
         """Learn the colours of a scene's objects from rendered pictures of them.
@@ -70,5 +70,4 @@ class ListedWorld:
 
     def _made_by(self) -> Any:
         self.check_available()
-        module, name = self.maker
-        return getattr(importlib.import_module(module), name)
+        return made_by(self.maker)

@@ -4,6 +4,7 @@ import gc
 import os
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import httpx
 import pytest
@@ -36,21 +37,40 @@ def pytest_collection_finish() -> None:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Each of several processes begins with the longest tests, so that none is left at the end.
 
-    Of the slow ones that say nothing else, which take about a second, the order stays random.
+    The slow ones of a module stay together, and those of a folder as far as they can: what they
+    share is then made once, and not by each process. Else the order stays random.
     pytest-xdist gives each of them so many tests that follow one another, to begin with.
     """
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
-    slow = sorted(filter(_seconds, items), key=_seconds, reverse=True)
+    shares = _shares([item for item in items if _seconds(item)], workers)
     quick = [item for item in items if not _seconds(item)]
     dealt: list[pytest.Item] = []
-    for worker in range(workers):
-        share = (len(items) - len(dealt)) // (workers - worker)
-        first = slow[worker::workers][:share]
-        rest = share - len(first)
+    for worker, first in enumerate(shares):
+        rest = max(0, (len(items) - len(dealt)) // (workers - worker) - len(first))
         dealt += first + quick[:rest]
         del quick[:rest]
-    if len(dealt) == len(items):
-        items[:] = dealt
+    items[:] = dealt + quick
+
+
+def _shares(slow: list[pytest.Item], workers: int) -> list[list[pytest.Item]]:
+    """For each process about as much of them, module by module."""
+    modules: dict[Path, list[pytest.Item]] = {}
+    for item in sorted(slow, key=lambda each: each.path.parent):
+        modules.setdefault(item.path, []).append(item)
+    share_s = sum(map(_seconds, slow)) / workers
+    shares: list[list[list[pytest.Item]]] = [[] for _ in range(workers)]
+    dealt_s = 0.0
+    for module in modules.values():
+        module_s = sum(map(_seconds, module))
+        middle_s = dealt_s + module_s / 2
+        shares[min(workers - 1, int(middle_s / share_s))].append(module)
+        dealt_s += module_s
+    return [_longest_first(share) for share in shares]
+
+
+def _longest_first(modules: list[list[pytest.Item]]) -> list[pytest.Item]:
+    longest = sorted(modules, key=lambda module: max(map(_seconds, module)), reverse=True)
+    return [item for module in longest for item in sorted(module, key=_seconds, reverse=True)]
 
 
 def _seconds(item: pytest.Item) -> float:

@@ -15,6 +15,17 @@ export default defineConfig({
     sourcemap: false,
     // Three.js is big and comes only when the robot is looked at.
     chunkSizeWarningLimit: 1200,
+    rolldownOptions: {
+      // What every page begins with is one file after its words: a browser asks for six at a time.
+      output: {
+        codeSplitting: {
+          groups: [
+            { name: "main", test: /src\/main\.tsx$/, priority: 1 },
+            { name: "begin", test: /src\/begin\.tsx$/ },
+          ],
+        },
+      },
+    },
   },
   server: {
     proxy: {

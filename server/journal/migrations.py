@@ -1,7 +1,7 @@
 """The journal's tables: one migration per schema version, applied in order, never edited."""
 
 import sqlite3
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
@@ -182,6 +182,8 @@ class JournalSchemaError(MendError):
 def migrate(connection: sqlite3.Connection) -> None:
     """Bring a journal's tables to the newest version, one transaction per version.
 
+    A new journal gets all in one: each waits several times for the disk.
+
     Raises `JournalSchemaError` for a journal from a newer Mend or a file that is none, and
     `sqlite3.OperationalError` where the file cannot be read or written, another
     `sqlite3.DatabaseError` where it is damaged.
@@ -197,24 +199,44 @@ def migrate(connection: sqlite3.Connection) -> None:
             f"the journal has schema version {version}, this Mend knows up to {len(MIGRATIONS)}: "
             "use the newer Mend that wrote it"
         )
-    for number in range(version + 1, len(MIGRATIONS) + 1):
-        _apply(connection, number, MIGRATIONS[number - 1])
+    missing = range(version + 1, len(MIGRATIONS) + 1)
+    for numbers in [missing] if version == 0 else [[number] for number in missing]:
+        _apply(connection, numbers)
 
 
-def _apply(connection: sqlite3.Connection, number: int, migration: Migration) -> None:
-    applied = datetime.now(UTC).isoformat()
+def _apply(connection: sqlite3.Connection, numbers: Sequence[int]) -> None:
+    """Apply the migrations of these numbers, or none of them."""
+    connection.execute("BEGIN IMMEDIATE")
     try:
-        connection.executescript(f"BEGIN IMMEDIATE; {migration.statements}")
-        if migration.then is not None:
-            migration.then(connection)
-        connection.execute(
-            "INSERT INTO schema_version (version, applied) VALUES (?, ?)", (number, applied)
-        )
+        for number in numbers:
+            _apply_one(connection, number, MIGRATIONS[number - 1])
         connection.execute("COMMIT")
     except BaseException:
         if connection.in_transaction:
             connection.execute("ROLLBACK")
         raise
+
+
+def _apply_one(connection: sqlite3.Connection, number: int, migration: Migration) -> None:
+    # Not as a script, which would end the transaction.
+    for statement in _each_of(migration.statements):
+        connection.execute(statement)
+    if migration.then is not None:
+        migration.then(connection)
+    applied = datetime.now(UTC).isoformat()
+    connection.execute(
+        "INSERT INTO schema_version (version, applied) VALUES (?, ?)", (number, applied)
+    )
+
+
+def _each_of(statements: str) -> Iterator[str]:
+    """The statements one by one; each ends its line."""
+    statement = ""
+    for line in statements.strip().splitlines():
+        statement += f"{line}\n"
+        if sqlite3.complete_statement(statement):
+            yield statement
+            statement = ""
 
 
 def _schema_version(connection: sqlite3.Connection) -> int:
