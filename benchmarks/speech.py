@@ -30,15 +30,17 @@ import pocketsphinx
 from scipy.io import wavfile
 from scipy.signal import resample_poly
 
-from mend.server.speech.agreeing_decoder import AgreeingDecoder
 from mend.server.speech.commands import Command
 from mend.server.speech.decoding import Decoder, Hypothesis
 from mend.server.speech.ear import ProcessEars
+from mend.server.speech.fused_decoder import FusedDecoder
 from mend.server.speech.language_model import COMMAND_MARK, command_in, name, write_language_model
+from mend.server.speech.moonshine import Moonshine
 from mend.server.speech.recognizer import Recognizer, Utterance
-from mend.server.speech.speech_model import SherpaTranscriber, find_speech_model
+from mend.server.speech.speech_model import find_speech_model
 from mend.server.speech.sphinx_decoder import SphinxDecoder
 from mend.server.speech.vocabulary import phrase_commands
+from mend.server.speech.written_evidence import WrittenEvidence
 
 CACHE = Path("out/speech")
 PHRASES = tomllib.loads(Path(__file__).with_name("speech_phrases.toml").read_text())
@@ -410,7 +412,7 @@ def decoder_with(model: Path | None) -> Decoder:
     """What listens: PocketSphinx, alone or with an operator's model."""
     if model is None:
         return SphinxDecoder()
-    return AgreeingDecoder(SphinxDecoder(), SherpaTranscriber(find_speech_model(model)))
+    return FusedDecoder(SphinxDecoder(), WrittenEvidence(Moonshine(find_speech_model(model))))
 
 
 def main() -> None:
