@@ -14,7 +14,7 @@ import numpy as np
 from mend.server.speech.moonshine import END, Logs, Texts
 from mend.server.speech.speech_model import Tokens
 
-WIDTH = 24
+WIDTH = 16
 """So many beginnings of phrases are followed at a time."""
 FAR_BEHIND = 8.0
 """In natural logarithms: what is so far behind the best phrase is not followed."""

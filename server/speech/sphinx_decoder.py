@@ -53,8 +53,7 @@ BREATHS = {"a", "ah", "are", "i", "oh", "or", "uh"}
 OTHER_SCALE = 10.0
 """Readings whose scores differ by more than this do not compare: some overflow."""
 FAR_AHEAD = 0.2
-"""The margin of a command that has no rival among them, or only poor ones; negative, of one that
-is not among them."""
+"""The margin of a command that has no rival among them, or only poor ones; negative, the least."""
 
 
 class SphinxDecoder:
@@ -132,11 +131,12 @@ class SphinxDecoder:
             self._readings = [*self._best_readings()]
         ours = [score for meant, score in self._readings if meant is command]
         others = [score for meant, score in self._readings if meant is not command]
-        if not ours:
-            return 0.0 if command is self._heard else -FAR_AHEAD
+        if not ours and command is self._heard:
+            return 0.0
         if not others:
-            return FAR_AHEAD
-        return max(-FAR_AHEAD, min(FAR_AHEAD, max(ours) - max(others)))
+            return FAR_AHEAD if ours else -FAR_AHEAD
+        # What is not among the best readings is behind the last of them at least.
+        return max(-FAR_AHEAD, min(FAR_AHEAD, max(ours or [min(others)]) - max(others)))
 
     def _best_readings(self) -> Iterator[tuple[Command | None, float]]:
         """What each of the best readings means, and its score."""

@@ -2,11 +2,12 @@
 
 A likelihood ratio. For a command: every phrase of it, however far behind (`phrase_search.py`), and
 what else means it; against it: the most probable texts of all (`beam_search.py`), and other
-commands.
+commands. It is the average over the sound as it came and the same somewhat faster (speed
+perturbation, Ko et al. 2015): a voice that is hard for the model is often clearer in one of them.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -21,13 +22,15 @@ from mend.server.speech.vocabulary import Vocabulary, phrase_commands
 
 TEXTS = 8
 """So many texts are compared."""
+FASTER = 1.1
 
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
     """A command that an utterance may have been, by the most probable of its phrases.
 
-    `ahead` is the natural logarithm of how many times it is as probable as all else together.
+    `ahead` is the natural logarithm of how many times it is as probable as all else together,
+    within `FAR_BEHIND`.
     """
 
     command: Command
@@ -53,6 +56,10 @@ class WrittenEvidence:
         self._search = PhraseSearch(model.tokens, self._commands)
 
     def of(self, sound: bytes) -> tuple[str, Sequence[Candidate]]:
+        views = [self._heard_in(view) for view in (sound, _faster(sound))]
+        return views[0][0], _on_average([candidates for _, candidates in views])
+
+    def _heard_in(self, sound: bytes) -> tuple[str, dict[Command, Candidate]]:
         texts = self._model.begin(sound)
         phrases: dict[Command, dict[str, float]] = {}
         for phrase, log in self._search.logs_of(texts).items():
@@ -70,14 +77,38 @@ class WrittenEvidence:
         return (readings[0].text if readings else ""), _compared(phrases, others)
 
 
-def _compared(phrases: dict[Command, dict[str, float]], others: Sequence[float]) -> list[Candidate]:
+def _compared(
+    phrases: dict[Command, dict[str, float]], others: Sequence[float]
+) -> dict[Command, Candidate]:
     together = {command: _together([*logs.values()]) for command, logs in phrases.items()}
-    found = []
+    found = {}
     for command, log in together.items():
         rest = _together([*others, *(each for of, each in together.items() if of is not command)])
         phrase = max(phrases[command], key=lambda each: phrases[command][each])
-        found.append(Candidate(command, phrase, min(FAR_BEHIND, log - rest)))
+        ahead = max(-FAR_BEHIND, min(FAR_BEHIND, log - rest))
+        found[command] = Candidate(command, phrase, ahead)
     return found
+
+
+def _on_average(views: Sequence[Mapping[Command, Candidate]]) -> list[Candidate]:
+    found = []
+    for command in {command: None for view in views for command in view}:
+        best = max((view[command] for view in views if command in view), key=_ahead_of)
+        aheads = [view[command].ahead if command in view else -FAR_BEHIND for view in views]
+        found.append(Candidate(command, best.phrase, sum(aheads) / len(aheads)))
+    return found
+
+
+def _ahead_of(candidate: Candidate) -> float:
+    return candidate.ahead
+
+
+def _faster(sound: bytes) -> bytes:
+    """As a somewhat faster and higher voice would say it."""
+    samples = np.frombuffer(sound, np.int16)
+    places = np.arange(0, len(samples), FASTER)
+    faster: bytes = np.interp(places, np.arange(len(samples)), samples).astype(np.int16).tobytes()
+    return faster
 
 
 def _together(logs: Sequence[float]) -> float:
