@@ -2,11 +2,11 @@
 """How well spoken answers are understood, on synthetic voices; without a model of one's own against
 a plain JSGF grammar.
 
-The corpus is made by espeak-ng and flite, and Festival with `--drawn`. Weights and thresholds were
-set on the tuned voices and the `tuned` phrases of `speech_phrases.toml` alone; what is printed is
-about `HELD_OUT_VOICES` and the `held_out` phrases, of which the last ones of each command are not in
-the vocabulary, and many unrelated ones are short or sound like commands, on purpose. It says nothing
-about people.
+The corpus is made by espeak-ng and flite, and Festival with `--drawn`. Weights and thresholds
+were set on the tuned voices and the `tuned` phrases of `speech_phrases.toml` alone; what is
+printed is about `HELD_OUT_VOICES` and the `held_out` phrases, of which the last ones of each
+command are not in the vocabulary, and many unrelated ones are short or sound like commands, on
+purpose. It says nothing about people.
 """
 
 import argparse

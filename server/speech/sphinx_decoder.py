@@ -141,7 +141,7 @@ class SphinxDecoder:
     def _best_readings(self) -> Iterator[tuple[Command | None, float]]:
         """What each of the best readings means, and its score."""
         first: float | None = None
-        for reading in islice(self._search.nbest(), READINGS):
+        for reading in islice(self._search.nbest() or (), READINGS):
             if reading is None or not reading.hypstr or reading.score <= 0:
                 continue
             score = math.log(reading.score)
