@@ -35,7 +35,7 @@ from mend.server.speech.speech_model import find_speech_model
 from mend.server.speech.sphinx_decoder import SphinxDecoder
 from mend.server.speech.written_evidence import WrittenEvidence
 
-ODDS = 2.0
+ODDS = 3.0
 """So many times as probable as not a command has to be."""
 ROUNDS = 3
 """Which command is best depends on the weights, and they on which it is."""

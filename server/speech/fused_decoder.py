@@ -31,8 +31,8 @@ class FusionWeights:
     """Of PocketSphinx's margin."""
     letters: float = 1.6
     """Of the logarithm of how many letters the phrase has: little else sounds like a long one."""
-    least: float = 1.65
-    """What the sum has to be for a command to count: it is then twice as probable as not."""
+    least: float = 2.06
+    """What the sum has to be for a command to count: it is then three times as probable as not."""
 
 
 class FusedDecoder:
