@@ -12,14 +12,17 @@ from functools import cache
 from pathlib import Path
 from typing import BinaryIO
 
-from mend.server.speech.agreeing_decoder import AgreeingDecoder
+from mend.server.speech.beam_search import GreedyTranscriber
 from mend.server.speech.decoding import Decoder
 from mend.server.speech.ear import AFRESH, BREAK, HEADER, EarReport
+from mend.server.speech.fused_decoder import FusedDecoder
+from mend.server.speech.moonshine import Moonshine
 from mend.server.speech.recognizer import Heard, Recognizer, SpeechBegan
-from mend.server.speech.speech_model import SherpaTranscriber, find_speech_model
+from mend.server.speech.speech_model import find_speech_model
 from mend.server.speech.sphinx_decoder import SphinxDecoder
 from mend.server.speech.vocabulary import SpokenLanguage, Vocabulary
 from mend.server.speech.written_decoder import WrittenDecoder
+from mend.server.speech.written_evidence import WrittenEvidence
 
 _VOCABULARIES = {code: vocabulary for vocabulary, code in AFRESH.items()}
 
@@ -39,12 +42,12 @@ def main() -> None:
 
 def _with_model(folder: str, language: str) -> Callable[[Vocabulary], Decoder]:
     """Decoders with an operator's speech model, which is read once and alone hears German."""
-    transcriber = SherpaTranscriber(find_speech_model(Path(folder)))
+    moonshine = Moonshine(find_speech_model(Path(folder)))
 
     def decoder_of(vocabulary: Vocabulary) -> Decoder:
         if language == SpokenLanguage.GERMAN:
-            return WrittenDecoder(transcriber, vocabulary)
-        return AgreeingDecoder(SphinxDecoder(vocabulary), transcriber, vocabulary)
+            return WrittenDecoder(GreedyTranscriber(moonshine), vocabulary)
+        return FusedDecoder(SphinxDecoder(vocabulary), WrittenEvidence(moonshine, vocabulary))
 
     return decoder_of
 

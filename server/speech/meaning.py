@@ -29,6 +29,8 @@ _REFUSING = frozenset((
 """Words that a no may go on with, besides."""
 _NO_ANSWERS = ("no idea", "no matter", "no one", "no problem", "no doubt", "no more", "no worries")
 """What begins like a no and is none."""
+_WHOLE_PHRASES_ONLY = "don't"
+"""What follows it is what not to do: `don't it` is a mishearing, not a no in words of one's own."""
 
 
 def meaning_of(
@@ -64,7 +66,7 @@ def _bare(words: Sequence[str]) -> list[str]:
 
 def _answer_in(words: Sequence[str], known: Mapping[str, Command]) -> Command | None:
     """The yes or no that words begin with, where the others do not change it."""
-    if len(words) > _MOST_WORDS or " ".join(words).startswith(_NO_ANSWERS):
+    if len(words) > _MOST_WORDS or " ".join(words).startswith((*_NO_ANSWERS, _WHOLE_PHRASES_ONLY)):
         return None
     for count in range(len(words), 0, -1):
         command = known.get(" ".join(words[:count]))

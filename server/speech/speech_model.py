@@ -1,21 +1,14 @@
-"""An operator's own speech model: a folder of Moonshine's files, and the transcriber that reads it.
-
-Moonshine (Jeffries et al. 2024) is run by sherpa-onnx, on this machine.
-"""
+"""An operator's own speech model: a folder of Moonshine's files, and the tokens that it writes."""
 
 import base64
-from collections.abc import Iterator
+import binascii
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Protocol
-
-import numpy as np
 
 from mend.errors import WrongInputError
 
-RATE_HZ = 16_000
 _SUFFIXES = (".ort", ".onnx")
 _ENCODER, _DECODER = "encoder_model", "decoder_model_merged"
 _TOKENS, _TOKENIZER = "tokens.txt", "tokenizer.bin"
@@ -23,14 +16,6 @@ _TOKENS, _TOKENIZER = "tokens.txt", "tokenizer.bin"
 
 class SpeechModelError(WrongInputError):
     """A folder is no speech model that can be used here; the message is one sentence."""
-
-
-class Transcriber(Protocol):
-    """What writes down what is said."""
-
-    def text_of(self, sound: bytes) -> str:
-        """The text of an utterance (PCM16, mono, 16 kHz); empty where there is none."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +29,9 @@ class SpeechModel:
 
 def find_speech_model(folder: Path) -> SpeechModel:
     """The model in a folder. Raises `SpeechModelError` if it cannot be used."""
-    if find_spec("sherpa_onnx") is None:
+    if find_spec("onnxruntime") is None:
         raise SpeechModelError(
-            "sherpa-onnx is not installed: pip install 'mend-robots[speech-model]'"
+            "onnxruntime is not installed: pip install 'mend-robots[speech-model]'"
         )
     if not folder.is_dir():
         raise SpeechModelError(f"there is no folder {folder} with a speech model")
@@ -57,33 +42,52 @@ def find_speech_model(folder: Path) -> SpeechModel:
     )
 
 
-class SherpaTranscriber:
-    """A Moonshine model in sherpa-onnx, on one core.
+class Tokens:
+    """The pieces of words that a model writes, each of which is a number to it.
 
-    Raises `SpeechModelError` if its files cannot be read.
+    A piece that begins a word begins with the mark of SentencePiece (Kudo and Richardson 2018).
     """
 
-    def __init__(self, model: SpeechModel) -> None:
-        from sherpa_onnx import OfflineRecognizer
+    _WORD = "\N{LOWER ONE EIGHTH BLOCK}"
 
-        with TemporaryDirectory(prefix="mend-speech-") as folder:
-            tokens = _listed(model.tokens, Path(folder))
-            try:
-                self._recognizer = OfflineRecognizer.from_moonshine_v2(
-                    encoder=str(model.encoder), decoder=str(model.decoder), tokens=str(tokens)
-                )
-            except RuntimeError as error:
-                reason = str(error).strip().splitlines()[0]
-                raise SpeechModelError(
-                    f"the speech model in {model.encoder.parent} cannot be read: {reason}"
-                ) from error
+    def __init__(self, pieces: Sequence[bytes]) -> None:
+        self._pieces = pieces
+        # The last of equal ones: the first are single bytes, which other scripts are spelled with.
+        self._numbers = {piece: number for number, piece in enumerate(pieces)}
 
-    def text_of(self, sound: bytes) -> str:
-        stream = self._recognizer.create_stream()
-        samples = np.frombuffer(sound, np.int16).astype(np.float32) / 32768.0
-        stream.accept_waveform(RATE_HZ, samples)
-        self._recognizer.decode_stream(stream)
-        return str(stream.result.text)
+    def __len__(self) -> int:
+        return len(self._pieces)
+
+    def text_of(self, numbers: Sequence[int]) -> str:
+        """What tokens spell."""
+        spelled = b"".join(self._pieces[each] for each in numbers)
+        return spelled.decode("utf-8", "replace").replace(self._WORD, " ").strip()
+
+    def spelling_of(self, text: str) -> tuple[int, ...]:
+        """The tokens of a text, merged in the order that they were learned in, which is that of
+        their numbers. Raises `SpeechModelError` for a letter that is none.
+        """
+        letters = self._WORD + text.replace(" ", self._WORD)
+        parts = [each.encode() for each in letters]
+        while pairs := [
+            (self._numbers[pair], at)
+            for at in range(len(parts) - 1)
+            if (pair := parts[at] + parts[at + 1]) in self._numbers
+        ]:
+            _, at = min(pairs)
+            parts[at : at + 2] = [parts[at] + parts[at + 1]]
+        return tuple(self.number_of(each) for each in parts)
+
+    def number_of(self, piece: bytes) -> int:
+        """Raises `SpeechModelError` where the model has no such token."""
+        if piece not in self._numbers:
+            raise SpeechModelError(f"the speech model has no token {piece.decode()!r}")
+        return self._numbers[piece]
+
+
+def read_tokens(path: Path) -> Tokens:
+    """The tokens of a model. Raises `SpeechModelError` where the file cannot be read."""
+    return Tokens(_listed_in(path) if path.name == _TOKENS else [*_tokens_in(path)])
 
 
 def _one_of(folder: Path, names: list[str]) -> Path:
@@ -93,17 +97,20 @@ def _one_of(folder: Path, names: list[str]) -> Path:
     raise SpeechModelError(f"the speech model in {folder} has no {' or '.join(names)}")
 
 
-def _listed(tokens: Path, folder: Path) -> Path:
-    """The tokens as the list that sherpa-onnx reads, written to `folder` if need be."""
-    if tokens.name == _TOKENS:
-        return tokens
-    lines = [
-        f"{base64.b64encode(token).decode()} {number}\n"
-        for number, token in enumerate(_tokens_in(tokens))
-    ]
-    listed = folder / _TOKENS
-    listed.write_text("".join(lines), "utf-8")
-    return listed
+def _listed_in(tokens: Path) -> list[bytes]:
+    """Each line is a token in base64 and its number."""
+    found: dict[int, bytes] = {}
+    for count, line in enumerate(tokens.read_bytes().splitlines(), 1):
+        token, _, number = line.rpartition(b" ")
+        try:
+            found[int(number)] = base64.b64decode(token, validate=True)
+        except (ValueError, binascii.Error):
+            raise SpeechModelError(
+                f"line {count} of {tokens} is not a token in base64 and its number"
+            ) from None
+    if sorted(found) != list(range(len(found))):
+        raise SpeechModelError(f"{tokens} does not number its tokens from 0 on")
+    return [found[number] for number in range(len(found))]
 
 
 def _tokens_in(tokenizer: Path) -> Iterator[bytes]:

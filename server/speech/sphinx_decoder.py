@@ -4,6 +4,7 @@ The search runs while the person still speaks, so that little is left to do at t
 """
 
 import math
+from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -52,7 +53,7 @@ BREATHS = {"a", "ah", "are", "i", "oh", "or", "uh"}
 OTHER_SCALE = 10.0
 """Readings whose scores differ by more than this do not compare: some overflow."""
 FAR_AHEAD = 0.2
-"""The margin of a command that has no rival among them, or only poor ones."""
+"""The margin of a command that has no rival among them, or only poor ones; negative, the least."""
 
 
 class SphinxDecoder:
@@ -86,6 +87,8 @@ class SphinxDecoder:
         self._begun = self._searching = False
         self._waiting: list[bytes] = []
         self._taken_bytes = 0
+        self._heard: Command | None = None
+        self._readings: list[tuple[Command | None, float]] | None = None
 
     def begin(self) -> None:
         if self._begun:
@@ -95,6 +98,7 @@ class SphinxDecoder:
         self._search.start_utt()
         self._begun, self._searching = True, False
         self._waiting, self._taken_bytes = [], 0
+        self._heard = self._readings = None
 
     def take(self, sound: bytes) -> None:
         self._taken_bytes += len(sound)
@@ -115,7 +119,36 @@ class SphinxDecoder:
         if known is None:
             return Hypothesis(words)
         command, phrase = known
-        return Hypothesis(words, command, phrase, self._margin_of(command))
+        self._heard = command
+        return Hypothesis(words, command, phrase, self.margin_of(command))
+
+    def margin_of(self, command: Command) -> float:
+        """By how much the best reading as a command is ahead of the best other one.
+
+        Negative where it is behind. Of the utterance that was ended last.
+        """
+        if self._readings is None:
+            self._readings = [*self._best_readings()]
+        ours = [score for meant, score in self._readings if meant is command]
+        others = [score for meant, score in self._readings if meant is not command]
+        if not ours and command is self._heard:
+            return 0.0
+        if not others:
+            return FAR_AHEAD if ours else -FAR_AHEAD
+        # What is not among the best readings is behind the last of them at least.
+        return max(-FAR_AHEAD, min(FAR_AHEAD, max(ours or [min(others)]) - max(others)))
+
+    def _best_readings(self) -> Iterator[tuple[Command | None, float]]:
+        """What each of the best readings means, and its score."""
+        first: float | None = None
+        for reading in islice(self._search.nbest() or (), READINGS):
+            if reading is None or not reading.hypstr or reading.score <= 0:
+                continue
+            score = math.log(reading.score)
+            first = score if first is None else first
+            if abs(score - first) < OTHER_SCALE:
+                meant = command_in(_without_breaths(reading.hypstr), self._vocabulary)
+                yield (None if meant is None else meant[0]), score
 
     def _search_on(self) -> None:
         if not self._searching:
@@ -141,24 +174,6 @@ class SphinxDecoder:
         own = blended + (blended - USUAL_MEAN) * (PRIOR_FRAMES / frames)
         mean: Cepstrum = (USUAL_MEAN * USUAL_WEIGHT + own * frames) / (USUAL_WEIGHT + frames)
         return mean
-
-    def _margin_of(self, command: Command) -> float:
-        """By how much the best reading as a command is ahead of the best other one."""
-        ours: list[float] = []
-        others: list[float] = []
-        first: float | None = None
-        for reading in islice(self._search.nbest(), READINGS):
-            if reading is None or not reading.hypstr or reading.score <= 0:
-                continue
-            score = math.log(reading.score)
-            first = score if first is None else first
-            if abs(score - first) < OTHER_SCALE:
-                meant = command_in(_without_breaths(reading.hypstr), self._vocabulary)
-                same = meant is not None and meant[0] is command
-                (ours if same else others).append(score)
-        if not others:
-            return FAR_AHEAD
-        return min(FAR_AHEAD, max(ours) - max(others)) if ours else 0.0
 
 
 def _without_breaths(words: str) -> str:

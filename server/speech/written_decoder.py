@@ -2,9 +2,9 @@
 
 import math
 
+from mend.server.speech.beam_search import Transcriber
 from mend.server.speech.decoding import Hypothesis
 from mend.server.speech.german import meaning_in_german
-from mend.server.speech.speech_model import Transcriber
 from mend.server.speech.vocabulary import Vocabulary
 
 

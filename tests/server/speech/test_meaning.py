@@ -48,6 +48,7 @@ def test_a_command_may_be_said_in_words_of_ones_own(text: str, command: Command)
         "Sure about the price?",
         "He said yes.",
         "Don't stop.",
+        "Don't it?",
         "Stop and go.",
         "Yes I can do that and then I will go to help you there again today please",
         "A robot",

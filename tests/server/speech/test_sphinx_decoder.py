@@ -12,7 +12,7 @@ from wav_device import pcm_of
 from mend.server.speech.commands import Command
 from mend.server.speech.decoding import Hypothesis
 from mend.server.speech.recognizer import FRAME_BYTES, Recognizer, Utterance
-from mend.server.speech.sphinx_decoder import SphinxDecoder
+from mend.server.speech.sphinx_decoder import FAR_AHEAD, SphinxDecoder
 from mend.server.speech.voice import CommandVoice, choose_voice
 
 pytestmark = pytest.mark.slow
@@ -68,6 +68,18 @@ def test_the_same_sound_is_heard_the_same_again(decoder: SphinxDecoder) -> None:
         heard.append(decoder.end())
     assert heard[0] == heard[1]
     assert heard[0].margin > 0
+
+
+def test_a_command_is_ahead_of_what_it_is_taken_for_least(decoder: SphinxDecoder) -> None:
+    decoder.begin()
+    decoder.take(said("yes please"))
+    heard = decoder.end()
+    assert decoder.margin_of(Command.YES) == heard.margin
+    for other in (Command.NO, Command.STOP):
+        assert -FAR_AHEAD <= decoder.margin_of(other) < 0
+    decoder.begin()
+    decoder.end()
+    assert decoder.margin_of(Command.YES) == -FAR_AHEAD, "nothing was said since"
 
 
 def test_no_sound_has_no_words(decoder: SphinxDecoder) -> None:
