@@ -53,7 +53,7 @@ async def test_a_service_that_lets_strangers_do_what_others_may_is_found(
 ) -> None:
     monkeypatch.setattr("mend.server.access.access.REFUSED", Admission(Caller(ANYBODY)))
     async with bench() as made:
-        found = await fuzz_strangers(made, 30, 7)
+        found = await fuzz_strangers(made, 120, 7)
     assert any("without a credential" in each.sentence for each in found.findings)
 
 

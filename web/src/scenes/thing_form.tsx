@@ -4,6 +4,7 @@ import { linearColor, screenColor } from "./colors";
 import type { Pose, Thing } from "./scene_source";
 import { SizeFields } from "./size_fields";
 import { keyOf, type ThingProblem } from "./thing_problems";
+import { Told } from "../words/told";
 import { t } from "../words/words";
 
 interface ThingFormProps {
@@ -61,7 +62,7 @@ export function ThingForm(props: ThingFormProps) {
       </div>
       {problems.map(({ message, mistake }) => (
         <p key={message} class={mistake ? "mistake-line" : "doubt-line"}>
-          {message}
+          <Told text={message} />
         </p>
       ))}
       {thing.where === null ? (

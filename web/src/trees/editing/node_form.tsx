@@ -5,6 +5,7 @@ import type { SceneNames } from "./new_nodes";
 import { ParameterField } from "./parameter_field";
 import { AUTONOMY, type Parameter, parametersOf } from "./parameters";
 import { GOAL_KINDS, goalKindOf, type GoalKind, type PlainNode } from "./plain_node";
+import { Told } from "../../words/told";
 import { t } from "../../words/words";
 
 interface NodeFormProps {
@@ -35,7 +36,7 @@ export function NodeForm(props: NodeFormProps) {
       </div>
       {problems.map((problem) => (
         <p key={problem} class="mistake-line">
-          {problem}
+          <Told text={problem} />
         </p>
       ))}
       <div class="node-fields">
