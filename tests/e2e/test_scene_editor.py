@@ -1,10 +1,11 @@
 """Changing a scene from above: what is done by pointer, keys and form is said in its text."""
 
+import asyncio
 import re
 
 import pytest
 from console_in_browser import OpenPage
-from playwright.async_api import Locator, Page, expect
+from playwright.async_api import Locator, Page, Route, expect
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
@@ -51,6 +52,26 @@ async def test_a_part_is_moved_undone_and_kept_with_the_limits_in_sight(
 
     await page.get_by_role("button", name="Save").click()
     await expect(page.get_by_role("link", name="Edit bench", exact=True)).to_be_visible()
+
+
+async def test_what_is_being_typed_stays_when_a_check_comes_back(open_page: OpenPage) -> None:
+    typed = asyncio.Event()
+
+    async def check_later(route: Route) -> None:
+        await typed.wait()
+        await route.continue_()
+
+    page = await open_page("/edit_scene")
+    await page.route("**/api/scenes/check**", check_later)
+    await text_of(page).fill(BENCH)
+    await page.get_by_role("button", name="cup, part").focus()
+    forward = page.get_by_label("Forward x (m)")
+    await forward.fill("0.5")
+    typed.set()
+    await expect(page.get_by_role("status").filter(has_text="No mistakes")).to_be_visible()
+    await expect(forward).to_have_value("0.5")
+    await forward.press("Enter")
+    await expect(text_of(page)).to_have_value(BENCH.replace("x: 0.45, y: -0.5", "x: 0.5, y: -0.5"))
 
 
 async def drag(page: Page, handle: Locator, by_x: float, by_y: float) -> None:

@@ -1,4 +1,5 @@
 // How large a part is, in numbers.
+import { EnteredInput } from "../document/entered_input";
 import { SMALLEST_M } from "./thing_change";
 import { t } from "../words/words";
 
@@ -20,14 +21,14 @@ export function SizeFields({ id, size, onSize }: SizeFieldsProps) {
       {EXTENTS.map((said, index) => (
         <div key={said} class="field">
           <label for={`${id}-size-${index}`}>{said}</label>
-          <input
+          <EnteredInput
             id={`${id}-size-${index}`}
             type="number"
             required
             min={SMALLEST_M}
             step="any"
             value={String(Number((size[index] ?? 0).toFixed(3)))}
-            onChange={(event) => enter(index, event.currentTarget)}
+            onEnter={(input) => enter(index, input)}
           />
         </div>
       ))}

@@ -1,4 +1,5 @@
 // The selected thing of a scene in numbers, to be changed.
+import { EnteredInput } from "../document/entered_input";
 import { plain } from "../tree/words";
 import { linearColor, screenColor } from "./colors";
 import type { Pose, Thing } from "./scene_source";
@@ -79,8 +80,7 @@ export function ThingForm(props: ThingFormProps) {
 
 function Numbers({ thing, tableHeight, onMove }: ThingFormProps) {
   const { pose, together, kind } = thing;
-  const enter = (event: { currentTarget: HTMLInputElement }, change: (value: number) => Partial<Pose>) => {
-    const { value, valueAsNumber } = event.currentTarget;
+  const enter = ({ value, valueAsNumber }: HTMLInputElement, change: (value: number) => Partial<Pose>) => {
     if (value !== "" && Number.isFinite(valueAsNumber)) onMove(change(valueAsNumber));
   };
   const bottom = kind === "robot" ? 0 : tableHeight;
@@ -90,31 +90,31 @@ function Numbers({ thing, tableHeight, onMove }: ThingFormProps) {
       <div class="node-fields">
         <div class="field">
           <label for="thing-x">{t("Forward x (m)")}</label>
-          <input id="thing-x" type="number" step="0.001" value={shown(pose.x)} onChange={(event) => enter(event, (x) => ({ x }))} />
+          <EnteredInput id="thing-x" type="number" step="0.001" value={shown(pose.x)} onEnter={(input) => enter(input, (x) => ({ x }))} />
         </div>
         <div class="field">
           <label for="thing-y">{t("Left y (m)")}</label>
-          <input id="thing-y" type="number" step="0.001" value={shown(pose.y)} onChange={(event) => enter(event, (y) => ({ y }))} />
+          <EnteredInput id="thing-y" type="number" step="0.001" value={shown(pose.y)} onEnter={(input) => enter(input, (y) => ({ y }))} />
         </div>
         <div class="field">
           <label for="thing-z">{t("Bottom z (m)")}</label>
-          <input
+          <EnteredInput
             id="thing-z"
             type="number"
             step="0.001"
             value={pose.z === null ? "" : shown(pose.z)}
             placeholder={kind === "robot" ? t("0 (the floor)") : t("{bottom} (the table)", { bottom: shown(bottom) })}
-            onChange={(event) => (event.currentTarget.value === "" ? onMove({ z: null }) : enter(event, (z) => ({ z })))}
+            onEnter={(input) => (input.value === "" ? onMove({ z: null }) : enter(input, (z) => ({ z })))}
           />
         </div>
         <div class="field">
           <label for="thing-yaw">{t("Turned left (degrees)")}</label>
-          <input
+          <EnteredInput
             id="thing-yaw"
             type="number"
             step={kind === "robot" ? 90 : 1}
             value={shown(pose.yaw * DEGREES)}
-            onChange={(event) => enter(event, (degrees) => ({ yaw: degrees / DEGREES }))}
+            onEnter={(input) => enter(input, (degrees) => ({ yaw: degrees / DEGREES }))}
           />
         </div>
       </div>

@@ -1,4 +1,5 @@
 // What the selected node says, to be changed: its name, its kind, its behavior and the parameters of that.
+import { EnteredInput } from "../../document/entered_input";
 import type { BehaviorView } from "../../wire/types";
 import { KIND_WORDS, plain } from "../../tree/words";
 import type { SceneNames } from "./new_nodes";
@@ -42,7 +43,7 @@ export function NodeForm(props: NodeFormProps) {
       <div class="node-fields">
         <div class="field">
           <label for="node-name">{t("Name of this node")}</label>
-          <input
+          <EnteredInput
             id="node-name"
             class="mono"
             value={typeof node.name === "string" ? node.name : ""}
@@ -50,7 +51,7 @@ export function NodeForm(props: NodeFormProps) {
             maxlength={64}
             spellcheck={false}
             autocomplete="off"
-            onChange={(event) => rename(event.currentTarget.value.trim())}
+            onEnter={(input) => rename(input.value.trim())}
           />
         </div>
         {kind === null ? <LeafFields {...props} /> : <KindField kind={kind} onKind={props.onKind} />}

@@ -1,5 +1,6 @@
 // One parameter of a leaf's behavior as a field.
 import { useState } from "preact/hooks";
+import { EnteredInput } from "../../document/entered_input";
 import { plain } from "../../tree/words";
 import { enteredOf, type Parameter, valueOf } from "./parameters";
 import { t } from "../../words/words";
@@ -39,7 +40,7 @@ export function ParameterField({ parameter, value, names, onValue }: ParameterFi
           ))}
         </select>
       ) : (
-        <input
+        <EnteredInput
           id={id}
           value={entered}
           type={kind === "number" ? "number" : "text"}
@@ -50,7 +51,7 @@ export function ParameterField({ parameter, value, names, onValue }: ParameterFi
           list={names.length > 0 ? `${id}-names` : undefined}
           spellcheck={false}
           autocomplete="off"
-          onChange={(event) => enter(event.currentTarget.value.trim())}
+          onEnter={(input) => enter(input.value.trim())}
         />
       )}
       {names.length > 0 && (
