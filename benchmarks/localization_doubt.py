@@ -21,8 +21,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.stats import beta
-from synthetic.rough_laser import RoughLaser
-from synthetic.settings import SceneSettings
+from synthetic.floors import floor_maps, in_use
 from synthetic.world import scene
 
 from mend.localization.evaluation import Trace, follow
@@ -34,7 +33,6 @@ from mend.maps.vector_map_file import read_vector_map
 
 DATA = Path(os.environ.get("BENCH_DATA", Path(__file__).parents[2] / "shared/data"))
 STRETCH_M, DOUBT_M = 10.0, 2.0
-PEOPLE, REMOVED = 1.0, 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,25 +89,14 @@ def followed(vector_map: VectorMap, log: RecordedDrive, seed: int) -> Stretches:
 
 def made_up(given: argparse.Namespace) -> None:
     """Drives over floor maps, the maps and shares in turn."""
-    paths = sorted(given.maps.glob("*.vectormap.txt"))
-    names = [path.name.split(".")[0] for path in paths]
-    wanted = given.map or names
-    vector_maps = {n: read_vector_map(p) for n, p in zip(names, paths, strict=True) if n in wanted}
-    if not vector_maps:
-        raise SystemExit(f"there is no *.vectormap.txt of these in {given.maps}")
+    vector_maps = floor_maps(given.maps, given.map)
     each_way = len(vector_maps) * len(given.explained) * given.length
     laps = ceil(1e3 * given.kilometres / each_way)
     totals: dict[float, Stretches] = defaultdict(Stretches)
     for seed in range(given.first_seed, given.first_seed + laps):
         for name, vector_map in vector_maps.items():
             for explained in given.explained:
-                settings = SceneSettings(
-                    length_m=given.length,
-                    explained=explained,
-                    removed=REMOVED,
-                    people=PEOPLE,
-                    rough=RoughLaser() if given.rough else None,
-                )
+                settings = in_use(given.length, explained, rough=given.rough)
                 drive = scene(vector_map, settings, seed)
                 found = followed(vector_map, drive.log, seed)
                 totals[explained] += found

@@ -22,6 +22,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
+from synthetic.floors import floor_maps
 from synthetic.rough_laser import RoughLaser
 from synthetic.settings import SceneSettings
 from synthetic.world import Scene, scene
@@ -32,7 +33,6 @@ from mend.localization.logs.log import LogStep
 from mend.localization.methods import METHODS, warm_up
 from mend.localization.pose import Poses
 from mend.maps.vector_map import VectorMap
-from mend.maps.vector_map_file import read_vector_map
 
 DATA = Path(os.environ.get("BENCH_DATA", Path(__file__).parents[2] / "shared/data"))
 STEP_M = 0.1
@@ -165,12 +165,7 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="4 trials")
     given = parser.parse_args()
     methods = given.method or list(METHODS)
-    paths = sorted(given.maps.glob("*.vectormap.txt"))
-    vector_maps = {path.name.split(".")[0]: read_vector_map(path) for path in paths}
-    if given.map:
-        vector_maps = {name: vector_maps[name] for name in given.map}
-    if not vector_maps:
-        raise SystemExit(f"there is no *.vectormap.txt in {given.maps}")
+    vector_maps = floor_maps(given.maps, given.map)
     for method in methods:
         warm_up(method)
     changed = given.explained < 1.0

@@ -23,8 +23,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.stats import beta, chi2
-from synthetic.rough_laser import RoughLaser
-from synthetic.settings import SceneSettings
+from synthetic.floors import floor_maps, in_use
 from synthetic.world import Scene, scene
 
 from mend.localization.evaluation import follow
@@ -32,7 +31,6 @@ from mend.localization.localizer import Timed
 from mend.localization.methods import METHODS, warm_up
 from mend.localization.pictures.canvas import Svg
 from mend.maps.vector_map import VectorMap
-from mend.maps.vector_map_file import read_vector_map
 
 DATA = Path(os.environ.get("BENCH_DATA", Path(__file__).parents[2] / "shared/data"))
 PUBLISHED_KM = {
@@ -44,8 +42,6 @@ PUBLISHED_KM = {
     "NSH4": (0.56, 2.65),
 }
 """Kilometres between interventions, CGR and EnML, as published."""
-PEOPLE = 1.0
-REMOVED = 0.02
 COLORS = {"enml": (140, 30, 170), "cgr": (255, 140, 0), "mcl": (30, 160, 60)}
 
 
@@ -186,24 +182,13 @@ def main() -> None:
     if given.quick:
         given.seeds, given.length, given.explained = 1, 25.0, [0.3]
     methods = given.method or list(METHODS)
-    paths = sorted(given.maps.glob("*.vectormap.txt"))
-    vector_maps = {path.name.split(".")[0]: read_vector_map(path) for path in paths}
-    if given.map:
-        vector_maps = {name: vector_maps[name] for name in given.map}
-    if not vector_maps:
-        raise SystemExit(f"there is no *.vectormap.txt in {given.maps}")
+    vector_maps = floor_maps(given.maps, given.map)
     for method in methods:
         warm_up(method)
     tallies: dict[tuple[str, float], dict[str, Tally]] = {}
     for name, vector_map in vector_maps.items():
         for explained in given.explained:
-            settings = SceneSettings(
-                length_m=given.length,
-                explained=explained,
-                removed=REMOVED,
-                people=PEOPLE,
-                rough=RoughLaser() if given.rough else None,
-            )
+            settings = in_use(given.length, explained, rough=given.rough)
             row = tallies[name, explained] = {method: Tally() for method in methods}
             for seed in range(given.first_seed, given.first_seed + given.seeds):
                 made_up = scene(vector_map, settings, seed)

@@ -1,9 +1,9 @@
 # ruff: noqa: T201
 """Sets the weights with which PocketSphinx's margin and a model's odds are added up.
 
-Logistic regression over what the tuned voices of `speech.py` say of the tuned phrases: of the
-command that the sum holds for best, is it what was said? Printed are the weights, and how they do
-on each voice where they are set with the others.
+Logistic regression over what the tuned voices of `speech_corpus.py` say of the tuned phrases: of
+the command that the sum holds for best, is it what was said? Printed are the weights, and how they
+do on each voice where they are set with the others.
 """
 
 import argparse
@@ -15,20 +15,20 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize
-from speech import (
+from speech import VOCABULARY, Share
+from speech_corpus import (
     FRAME_BYTES,
     MORE_TUNED_VOICES,
     PHRASES,
     TUNED_VOICES,
-    VOCABULARY,
     Condition,
-    Share,
     Spoken,
     microphone,
 )
 
 from mend.server.speech.commands import Command
 from mend.server.speech.decoding import Hypothesis
+from mend.server.speech.fused_decoder import evidence_of
 from mend.server.speech.moonshine import Moonshine
 from mend.server.speech.recognizer import Recognizer
 from mend.server.speech.speech_model import find_speech_model
@@ -86,12 +86,9 @@ class Collecting:
     def end(self) -> Hypothesis:
         self.alone = self._decoder.end().command
         self.evidence = {
-            each.command: np.array([
-                each.ahead, self._decoder.margin_of(each.command),
-                math.log(len(each.phrase.replace(" ", ""))), 1.0,
-            ])
+            each.command: np.array([*evidence_of(each, self._decoder.margin_of(each.command)), 1.0])
             for each in self._written.of(b"".join(self._taken))[1]
-        }  # fmt: skip
+        }
         return Hypothesis("")
 
 

@@ -69,9 +69,12 @@ class FusedDecoder:
 
     def _sum_of(self, candidate: Candidate) -> float:
         weights = self._weights
-        letters = len(candidate.phrase.replace(" ", ""))
-        return (
-            weights.ahead * candidate.ahead
-            + weights.margin * self._decoder.margin_of(candidate.command)
-            + weights.letters * math.log(letters)
-        )
+        evidence = evidence_of(candidate, self._decoder.margin_of(candidate.command))
+        ahead, margin, letters = evidence
+        return weights.ahead * ahead + weights.margin * margin + weights.letters * letters
+
+
+def evidence_of(candidate: Candidate, margin: float) -> tuple[float, float, float]:
+    """What is added up of a command, each with its weight; `margin` is PocketSphinx's."""
+    letters = len(candidate.phrase.replace(" ", ""))
+    return candidate.ahead, margin, math.log(letters)
