@@ -2,6 +2,7 @@
 
 import math
 import re
+import unicodedata
 
 from mend.errors import WrongInputError
 from mend.maps.building.building import Building, FloorPlace, PlaceKind
@@ -15,7 +16,11 @@ SPARE_M = 0.05
 NEEDS_M = RADIUS_M + SPARE_M
 APART_M = 1.0
 """Robots begin so far from each other."""
-_ODD = re.compile(r"[^A-Za-z0-9_-]")
+_ODD = re.compile(r"[^A-Za-z0-9_-]+")
+_UNMARKED = str.maketrans(
+    {"ß": "ss", "æ": "ae", "Æ": "Ae", "œ": "oe", "Œ": "Oe", "ø": "o", "Ø": "O"}
+)
+"""Letters of which none is left if what is put to a letter is taken off."""
 _BEGINS = (PlaceKind.CHARGER, PlaceKind.PARKING, PlaceKind.WAYPOINT, PlaceKind.ROOM)
 """Where robots begin on a floor, the first kind first: two hardly meet in a room's door."""
 
@@ -48,8 +53,13 @@ def scene_of(building: Building, name: str, robots: int) -> Scene:
 
 
 def scene_name(full: str) -> str:
-    """What a place, `FLOOR/PLACE`, is called in scenes, whose names are plainer."""
-    name = _ODD.sub("_", full.replace("/", "-"))
+    """What a place, `FLOOR/PLACE`, is called in scenes, whose names are plainer.
+
+    Robots say these names: of a letter with a mark the letter stays, as in `Buro`.
+    """
+    letters = unicodedata.normalize("NFKD", full.translate(_UNMARKED))
+    plain = "".join(each for each in letters if not unicodedata.combining(each))
+    name = _ODD.sub("_", plain.replace("/", "-"))
     return (name if name[0].isalpha() else f"L{name}")[:LONGEST]
 
 

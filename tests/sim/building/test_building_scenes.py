@@ -69,6 +69,9 @@ def test_what_no_base_can_do_is_told_once() -> None:
 def test_names_of_places_become_names_of_scenes() -> None:
     assert scene_name("F1/101") == "F1-101"
     assert scene_name("1/tea room") == "L1-tea_room"
+    assert scene_name("1. OG/Küche groß") == "L1_OG-Kuche_gross"
+    assert scene_name("F1/Café Ångström") == "F1-Cafe_Angstrom"
+    assert scene_name("一/会议室") == "L_-_"
 
 
 def test_a_place_that_no_robot_gets_to_is_told() -> None:
