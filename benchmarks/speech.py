@@ -48,7 +48,7 @@ from mend.server.speech.fused_decoder import FusedDecoder
 from mend.server.speech.language_model import COMMAND_MARK, command_in, name, write_language_model
 from mend.server.speech.moonshine import Moonshine
 from mend.server.speech.recognizer import Recognizer, Utterance
-from mend.server.speech.speech_model import find_speech_model
+from mend.server.speech.speech_model import SpeechModelError, find_speech_model
 from mend.server.speech.sphinx_decoder import SphinxDecoder
 from mend.server.speech.vocabulary import phrase_commands
 from mend.server.speech.written_evidence import WrittenEvidence
@@ -308,7 +308,11 @@ def decoder_with(model: Path | None) -> Decoder:
     """What listens: PocketSphinx, alone or with an operator's model."""
     if model is None:
         return SphinxDecoder()
-    return FusedDecoder(SphinxDecoder(), WrittenEvidence(Moonshine(find_speech_model(model))))
+    try:
+        moonshine = Moonshine(find_speech_model(model))
+    except SpeechModelError as error:
+        sys.exit(str(error))
+    return FusedDecoder(SphinxDecoder(), WrittenEvidence(moonshine))
 
 
 def main() -> None:

@@ -75,7 +75,11 @@ class LocalizedPose:
         return None if self.is_lost else self._covariance
 
     def guesses(self) -> Sequence[str]:
-        """What the places are called that it may be at, likeliest first, each once."""
+        """What the places are called that it may be at, each once.
+
+        Where it has followed itself comes first, if what it sees allows that: a doubt is more often
+        false than it has been carried to a place that looks the same. Then the likeliest.
+        """
         named = (self._describe(float(each[0]), float(each[1])) for each in self._open_places())
         return list(dict.fromkeys(each for each in named if each is not None))[:MOST_GUESSES]
 
@@ -102,7 +106,7 @@ class LocalizedPose:
         return self._updated_s + _EVERY_S
 
     def believe(self, guess: str) -> bool:
-        """Take the likeliest place of that name, if what it sees agrees with it.
+        """Take the first place of that name, in the order of `guesses`, if what it sees agrees.
 
         It looks anew first: it may have been carried on since it asked.
         """
@@ -123,7 +127,8 @@ class LocalizedPose:
     # --- Within -------------------------------------------------------------------------------
 
     def _open_places(self) -> Sequence[Poses]:
-        return self._localizer.open_places() if self.is_lost else ()
+        places = self._localizer.open_places() if self.is_lost else ()
+        return sorted(places, key=lambda place: _is_elsewhere(self._at, place))
 
     def _update(self, moved: Poses, odometry: Poses) -> None:
         assert self._newest is not None, "there was a scan"

@@ -126,6 +126,24 @@ def test_a_place_that_it_is_told_is_taken_where_it_is_open() -> None:
     assert np.allclose(driven.pose.pose(driven.wheels), [3.0, 1.0, 0.2])
 
 
+def test_where_it_has_followed_itself_is_asked_about_first() -> None:
+    driven = Driven()
+    driven.localizer.lost = True
+    driven.drive(0.05)
+    driven.localizer.places = [np.array([9.0, 2.0, 0.5]), START + np.array([0.1, -0.1, 0.1])]
+    assert driven.pose.guesses() == ["at 5", "at 9"]
+
+
+def test_of_two_poses_in_a_room_it_takes_the_one_that_it_has_followed() -> None:
+    driven = Driven()
+    driven.localizer.lost = True
+    driven.drive(0.05)
+    turned = START + np.array([0.1, 0.1, np.pi])
+    driven.localizer.places = [turned, START + np.array([0.05, 0.0, 0.0])]
+    assert driven.pose.believe("at 5")
+    assert np.allclose(driven.pose.pose(driven.wheels), START + np.array([0.05, 0.0, 0.0]))
+
+
 def test_a_place_that_what_it_sees_speaks_against_is_not_taken() -> None:
     driven = Driven()
     driven.localizer.lost = True
