@@ -22,7 +22,7 @@ def _question(number: int) -> AskState:
         yes=f"told_{number}",
         yes_effect="I look whether what I see agrees; if so, {go_on}.",
         no=_after(number),
-        no_effect="I ask about another place, or else whether I shall leave the {name} out.",
+        no_effect="I ask about another place, or else whether I shall leave {doing} out.",
         guess=number,
         headline="say where I am",
     )
@@ -48,14 +48,14 @@ _STATES: dict[str, State] = {
     **{f"guess_{number}": _question(number) for number in _NUMBERS},
     **{f"told_{number}": _told(number) for number in _NUMBERS},
     "leave": AskState(
-        text="I do not know where I am, and cannot go on. Shall I leave the {name} out?",
+        text="I do not know where I am, and cannot go on. Shall I leave {doing} out?",
         yes="left_out",
-        yes_effect="I leave the {name} out, and the task counts it as left out by you.",
+        yes_effect="I leave {doing} out, and the task counts it as left out by you.",
         no="later",
         no_effect=ATTEMPT_FAILED,
-        headline="say whether I leave the {name} out",
+        headline="say whether I leave {doing} out",
     ),
-    "left_out": LeaveState(text="All right. I leave the {name} out.", deed="leave the {name} out"),
+    "left_out": LeaveState(text="All right. I leave {doing} out.", deed="leave {doing} out"),
     "later": CloseState(text="All right.", resolution=Resolution.ROBOT_RETRY),
 }
 

@@ -13,8 +13,12 @@ _COUNTS = (
 
 
 def spoken(identifier: str) -> str:
-    """A text with identifiers as people say it: `sugar_bowl` is a sugar bowl."""
-    return re.sub(r"(?<=\w)[_-](?=\w)", " ", identifier)
+    """A text with identifiers as people say it: `sugar_bowl` is a sugar bowl.
+
+    What only tells equal names apart is not said: `cup_of_tea--0afba7d8` is a cup of tea.
+    """
+    without_mark = re.sub(r"(?<=\w)--[0-9a-f]{8}\b", "", identifier)
+    return re.sub(r"(?<=\w)[_-](?=\w)", " ", without_mark)
 
 
 def called(robots: str) -> str:

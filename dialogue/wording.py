@@ -18,6 +18,7 @@ FIELDS = frozenset(
         "fetch",
         "message",
         "person",
+        "doing",
         "with_object",
         "place",
         "name",
@@ -33,9 +34,10 @@ FIELDS = frozenset(
 )
 """`item`: what is carried for people, `message`: what they are told, and `person`:
 who is escorted. `put_in`: what is to be done so that the robot has the item, which may be in the
-basket of another one (`put the mail into my basket`), and `fetch` the same in few words. `it`: the
-object, named once and `it` from then on.
-`with_object`: ` with the cup` with a blank before it, or nothing where there is no object.
+basket of another one (`put the mail into my basket`), and `fetch` the same in few words. `doing`:
+what a base does with its leaf (`the mail`, `the drive to 101`). `it`: the object, named once and
+`it` from then on. `with_object`: ` with the cup` with a blank before it, or nothing where there is
+no object.
 `why`: what the robot sensed, as a sentence with a blank before it, or nothing. `attempt`:
 `attempt 1 of 3`. `times`: how often this has happened. `again`, `later`, `go_on`: what the robot
 does next after help, after a failed attempt, and if it need not begin anew. `guess_1` to
@@ -62,6 +64,7 @@ def word(text: str, issue: Issue, outlook: Outlook, *, named: bool = False) -> W
         fetch=_fetch(issue, it),
         message=issue.message or "",
         person=issue.person or worded("somebody"),
+        doing=_doing(issue),
         object=spoken(issue.object or issue.item or issue.name),
         with_object=worded(" with {it}", it=the(issue.object)) if issue.object else "",
         place=spoken(issue.place or issue.name),
@@ -75,6 +78,19 @@ def word(text: str, issue: Issue, outlook: Outlook, *, named: bool = False) -> W
         go_on=outlook.going_on(),
     )
     return filled_in(text, args)
+
+
+def _doing(issue: Issue) -> Worded:
+    if (carried := issue.object or issue.item) is not None:
+        return the(carried)
+    if issue.place is None:
+        return the(issue.name)
+    place = spoken(issue.place)
+    if issue.message is not None:
+        return worded("the message for {place}", place=place)
+    if issue.person is not None:
+        return worded("the drive with {person} to {place}", person=issue.person, place=place)
+    return worded("the drive to {place}", place=place)
 
 
 def _where(guess: str) -> str:

@@ -26,6 +26,7 @@ from mend.robots.execution.behavior import Behavior
 from mend.server.runtime.requests import RunRequest
 from mend.server.sites.requests import FleetOptions
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
+from mend.tasks.plain_letters import plain_letters
 from mend.tasks.scenario import Person
 
 GO_TO = "go_to"
@@ -84,12 +85,21 @@ def _request(site: UUID, tree: str, robot: str, options: FleetOptions) -> RunReq
 
 def item_of(what: str, booking: str) -> str:
     """What robots call a thing: as a person does, as far as names go, and each its own."""
-    words = _NO_WORD.sub("_", _ARTICLE.sub("", what.strip()))[:_MOST_OF_WHAT].strip("_")
+    words = _plain(_ARTICLE.sub("", what.strip()))[:_MOST_OF_WHAT].strip("_")
     words = words if words[:1].isalpha() else f"item_{words}".rstrip("_")
-    asked = _NO_WORD.sub("_", booking)
+    asked, mark = _plain(booking), f"{crc32(booking.encode()):08x}"
+    if words == asked:
+        return words
+    if f"_{asked}_" in f"_{words}_":
+        # "The cup of tea tea" nobody would say: such a mark is not spoken.
+        return f"{words}--{mark}"
     if len(asked) > _MOST_OF_WHAT:
-        asked = f"{asked[: _MOST_OF_WHAT - 9]}_{crc32(booking.encode()):08x}"
-    return words if words == asked else f"{words}-{asked}"
+        asked = f"{asked[: _MOST_OF_WHAT - 9]}_{mark}"
+    return f"{words}-{asked}"
+
+
+def _plain(text: str) -> str:
+    return _NO_WORD.sub("_", plain_letters(text))
 
 
 def doable_kinds(behaviors: Mapping[str, type[Behavior]]) -> list[RequestKind]:

@@ -2,13 +2,13 @@
 
 import math
 import re
-import unicodedata
 
 from mend.errors import WrongInputError
 from mend.maps.building.building import Building, FloorPlace, PlaceKind
 from mend.maps.building.cabin import waiting_points
 from mend.maps.building.naming import LONGEST, unlike
 from mend.sim.building.building_robot import RADIUS_M
+from mend.tasks.plain_letters import plain_letters
 from mend.tasks.scene import Base, Place, Pose, Scene
 
 SPARE_M = 0.05
@@ -17,10 +17,6 @@ NEEDS_M = RADIUS_M + SPARE_M
 APART_M = 1.0
 """Robots begin so far from each other."""
 _ODD = re.compile(r"[^A-Za-z0-9_-]+")
-_UNMARKED = str.maketrans(
-    {"ß": "ss", "æ": "ae", "Æ": "Ae", "œ": "oe", "Œ": "Oe", "ø": "o", "Ø": "O"}
-)
-"""Letters of which none is left if what is put to a letter is taken off."""
 _BEGINS = (PlaceKind.CHARGER, PlaceKind.PARKING, PlaceKind.WAYPOINT, PlaceKind.ROOM)
 """Where robots begin on a floor, the first kind first: two hardly meet in a room's door."""
 
@@ -57,9 +53,7 @@ def scene_name(full: str) -> str:
 
     Robots say these names: of a letter with a mark the letter stays, as in `Buro`.
     """
-    letters = unicodedata.normalize("NFKD", full.translate(_UNMARKED))
-    plain = "".join(each for each in letters if not unicodedata.combining(each))
-    name = _ODD.sub("_", plain.replace("/", "-"))
+    name = _ODD.sub("_", plain_letters(full).replace("/", "-"))
     return (name if name[0].isalpha() else f"L{name}")[:LONGEST]
 
 

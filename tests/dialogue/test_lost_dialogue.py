@@ -1,5 +1,7 @@
 """The dialogue of a robot that is lost: what it asks, and what it believes."""
 
+from dataclasses import replace
+
 import pytest
 
 from mend.dialogue.conversation import Conversation
@@ -22,7 +24,7 @@ from mend.tasks.resolution import Resolution
 TWO = ("at F1-101", "near F1-103")
 
 
-def about(*guesses: str) -> Conversation:
+def about(*guesses: str, **more: str) -> Conversation:
     issue = Issue(
         kind="lost",
         robot="robot1",
@@ -37,7 +39,7 @@ def about(*guesses: str) -> Conversation:
         sensed=Sensed.BY_LASER,
         guesses=guesses,
     )
-    return Conversation(load_scripts()["lost"], issue, Outlook())
+    return Conversation(load_scripts()["lost"], replace(issue, **more), Outlook())
 
 
 def said(turns: list[Turn]) -> list[str]:
@@ -75,9 +77,22 @@ def test_after_the_last_guess_it_asks_whether_to_leave_it_out() -> None:
     conversation.answer("no")
     turns = conversation.answer("no")
     assert said(turns) == [
-        "I do not know where I am, and cannot go on. Shall I leave the rounds out?"
+        "I do not know where I am, and cannot go on. Shall I leave the drive to F1 102 out?"
     ]
     assert conversation.answer("yes")[-1] == Close(CloseReason.LEFT_OUT, None, helped=False)
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ({"item": "cup_of_tea"}, "the cup of tea"),
+        ({"message": "Lunch is ready"}, "the message for F1 102"),
+        ({"person": "Ada"}, "the drive with Ada to F1 102"),
+    ],
+)
+def test_it_says_what_it_would_leave_out(more: dict[str, str], told: str) -> None:
+    turns = about(**more).open()
+    assert said(turns) == [f"I do not know where I am, and cannot go on. Shall I leave {told} out?"]
 
 
 @pytest.mark.parametrize("guesses", [(), TWO])

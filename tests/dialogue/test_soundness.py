@@ -78,9 +78,9 @@ def test_a_field_that_no_sentence_has_is_refused() -> None:
     states: dict[str, State] = {"first": CloseState("The {colour} one.", Resolution.ROBOT_RETRY)}
     assert problems_of(states) == [
         "'text' of state 'first' has the field {colour}; "
-        "there are only {again}, {attempt}, {fetch}, {go_on}, {guess_1}, {guess_2}, {guess_3}, "
-        "{it}, {item}, {later}, {message}, {name}, {object}, {person}, {place}, {put_in}, {robot}, "
-        "{times}, {why}, {with_object}"
+        "there are only {again}, {attempt}, {doing}, {fetch}, {go_on}, {guess_1}, {guess_2}, "
+        "{guess_3}, {it}, {item}, {later}, {message}, {name}, {object}, {person}, {place}, {put_in}, "
+        "{robot}, {times}, {why}, {with_object}"
     ]
 
 

@@ -21,6 +21,7 @@ def test_robots_of_a_site_are_called_by_the_names_of_their_scene(name: str, said
 def test_identifiers_are_said_as_words() -> None:
     assert spoken("sugar_bowl") == "sugar bowl"
     assert spoken("part-12345678") == "part 12345678"
+    assert spoken("a cup_of_tea--0afba7d8, please") == "a cup of tea, please"
     assert [count_of(each) for each in (0, 1, 2, 3, 12)] == [
         "never",
         "once",
