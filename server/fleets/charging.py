@@ -43,16 +43,26 @@ class Charging:
     ) -> list[tuple[str, str]]:
         """Which of the robots that nobody has now are to go to which charger, if no other one is on
         its way there in one of the `errands`."""
-        shares = {
+        shares = self._shares(free, now_s)
+        if not shares:
+            return []
+        taken = {errand.place for errand in errands}
+        return list(who_charges(self._dispatcher, shares, self._reachable, taken))
+
+    def wanted(self, free: Iterable[str], now_s: float) -> list[tuple[str, str]]:
+        """Which of the robots that nobody has now, and that nobody has sent to a charger, would
+        charge where another one stands that is to make way."""
+        shares = self._shares(free, now_s)
+        return list(who_wants_another_away(self._dispatcher, shares, self._reachable))
+
+    def _shares(self, free: Iterable[str], now_s: float) -> dict[str, float]:
+        """What robots hold that nobody has, and that may try to charge by now."""
+        return {
             robot: share
             for robot in free
             if now_s >= self._again_s.get(robot, 0.0)
             if (share := self._battery(robot)) is not None
         }
-        if not shares:
-            return []
-        taken = {errand.place for errand in errands}
-        return list(who_charges(self._dispatcher, shares, self._reachable, taken))
 
     def enough(self, going: Iterable[Errand], now_s: float) -> list[Errand]:
         """Those that are to be broken off: their robots charge, and have something to do."""
@@ -109,6 +119,35 @@ def who_charges(
         if charger is not None and near[charger] < inf:
             free.remove(charger)
             yield name, charger
+
+
+def who_wants_another_away(
+    dispatcher: Dispatcher, shares: Mapping[str, float], reachable: Container[str]
+) -> Iterator[tuple[str, str]]:
+    """Which robot holds little, and at which charger another one stands that holds enough and has
+    nothing to do: the nearest.
+
+    `shares`: what the batteries of those hold that nobody has now, where it is known, in [0, 1].
+    """
+    fleet, building = dispatcher.fleet, dispatcher.building
+    stops, places = fleet.stops(), [each.name for each in building.graph.places]
+    chargers = [each for each in building.of_kind(PlaceKind.CHARGER) if each in reachable]
+    in_the_way = {
+        at: name
+        for name, share in shares.items()
+        if (at := places[fleet.robots[name].place]) in chargers
+        if share >= LEAVES_AT and not stops[name] and fleet.robots[name].works
+    }
+    for name, share in sorted(shares.items(), key=lambda each: each[1]):
+        if not in_the_way or not fleet.robots[name].works or share >= _least(dispatcher, name):
+            continue
+        if places[fleet.robots[name].place] in chargers:
+            continue
+        near = {each: fleet.lasts_s(name, each) for each in in_the_way}
+        at = min(near, key=lambda each: (near[each], each))
+        if near[at] < inf:
+            del in_the_way[at]
+            yield name, at
 
 
 def _least(dispatcher: Dispatcher, robot: str) -> float:

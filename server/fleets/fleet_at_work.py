@@ -167,7 +167,10 @@ class FleetAtWork:
                 self._errands.send(robot, charger, None, charges=True)
             unwanted = await asyncio.to_thread(self._decide, self.now_s)
             asked, self._asked_aside = self._asked_aside, {}
-            aside = [*asked.items(), *who_makes_way(self.dispatcher, self.places.names)]
+            free = [each for each in free if each not in self._errands.going]
+            to_charge = self._charging.wanted(free, self.now_s)
+            makes_way = who_makes_way(self.dispatcher, self.places.names, to_charge)
+            aside = [*asked.items(), *makes_way]
             for robot, to in aside:
                 if robot not in self._errands.going and self._site.rests(robot):
                     self._errands.send(robot, to, None)

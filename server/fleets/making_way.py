@@ -1,15 +1,18 @@
 """Robots with nothing to do that stand where another one is to come: each goes elsewhere."""
 
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterable, Iterator
 
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.maps.building.building import PlaceKind
 
 
-def who_makes_way(dispatcher: Dispatcher, reachable: Container[str]) -> Iterator[tuple[str, str]]:
+def who_makes_way(
+    dispatcher: Dispatcher, reachable: Container[str], also: Iterable[tuple[str, str]] = ()
+) -> Iterator[tuple[str, str]]:
     """Which robot goes to which place: its first one, a charger or where robots park.
 
-    `reachable`: the places that robots can be sent to, as `FLOOR/PLACE`. Who finds no such place
+    `reachable`: the places that robots can be sent to, as `FLOOR/PLACE`; `also`: which robots are
+    to come to which of them, besides for what the dispatcher has them do. Who finds no such place
     free stays.
     """
     robots, stops = dispatcher.fleet.robots, dispatcher.fleet.stops()
@@ -17,6 +20,7 @@ def who_makes_way(dispatcher: Dispatcher, reachable: Container[str]) -> Iterator
     stands = {name: places[each.place] for name, each in robots.items()}
     wanted = {(name, stop.place) for name, left in stops.items() for stop in left}
     wanted |= {(leg.robot, leg.place) for leg in dispatcher.legs_under_way()}
+    wanted |= set(also)
     busy = {name for name, _ in wanted}
     taken = {place for _, place in wanted} | set(stands.values())
     for name, place in stands.items():

@@ -23,7 +23,13 @@ from mend.maps.building.building import (
     PlaceKind,
 )
 from mend.robots.link.messages import IDENTITY, Poses
-from mend.server.fleets.charging import BUSY_BELOW, IDLE_BELOW, LEAVES_AT, who_charges
+from mend.server.fleets.charging import (
+    BUSY_BELOW,
+    IDLE_BELOW,
+    LEAVES_AT,
+    who_charges,
+    who_wants_another_away,
+)
 from mend.server.fleets.errands import BROKEN_OFF
 from mend.server.fleets.fleet_at_work import FleetAtWork
 from mend.server.fleets.place_names import PlaceNames
@@ -71,6 +77,30 @@ def test_a_charger_that_somebody_is_on_the_way_to_is_not_free() -> None:
     of = Dispatcher(building(), fleet_of("b", "d"))
     assert list(who_charges(of, {"r0": 0.3}, EVERYWHERE, {"f/a"})) == [("r0", "f/e")]
     assert list(who_charges(of, {"r0": 0.3}, EVERYWHERE, {"f/a", "f/e"})) == []
+
+
+def wanted(of: Dispatcher, shares: dict[str, float]) -> list[tuple[str, str]]:
+    return list(who_wants_another_away(of, shares, EVERYWHERE))
+
+
+def test_who_holds_enough_and_has_nothing_to_do_is_to_leave_the_charger() -> None:
+    of = Dispatcher(building("a"), fleet_of("a", "c"))
+    assert wanted(of, {"r0": LEAVES_AT, "r1": 0.3}) == [("r1", "f/a")]
+    assert wanted(of, {"r0": LEAVES_AT - 0.01, "r1": 0.3}) == [], "it charges itself"
+    assert wanted(of, {"r0": 1.0, "r1": IDLE_BELOW}) == [], "nobody needs it"
+    assert wanted(of, {"r1": 0.3}) == [], "somebody has the robot there"
+
+
+def test_of_two_who_wait_for_a_charger_the_one_that_holds_less_comes_first() -> None:
+    of = Dispatcher(building("a"), fleet_of("a", "b", "e"))
+    assert wanted(of, {"r0": 1.0, "r1": 0.3, "r2": 0.2}) == [("r2", "f/a")]
+
+
+def test_who_has_something_to_do_does_not_leave_a_charger_for_another_one() -> None:
+    of = Dispatcher(building("a"), fleet_of("a", "c"))
+    of.submit(visit(place="b"), 0.0)
+    busy = {name: not stops for name, stops in of.fleet.stops().items()}
+    assert [who for who, _ in wanted(of, {"r0": 1.0, "r1": 0.3})] == ["r1"] * busy["r0"]
 
 
 def test_who_finds_no_charger_free_goes_on() -> None:

@@ -47,3 +47,9 @@ def test_who_does_not_work_stays() -> None:
     second_comes(dispatcher, "c")
     dispatcher.robot_failed("r0", None, "a squeak", 4.0)
     assert list(who_makes_way(dispatcher, EVERYWHERE)) == []
+
+
+def test_who_is_in_the_way_of_somebody_else_besides_makes_way_too() -> None:
+    dispatcher = with_one_at_c()
+    assert list(who_makes_way(dispatcher, EVERYWHERE, [("r1", "f/c")])) == [("r0", "f/a")]
+    assert list(who_makes_way(dispatcher, EVERYWHERE, [("r1", "f/d")])) == []
