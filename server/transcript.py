@@ -9,8 +9,8 @@ from mend.server.steering_words import because, told_level, told_wait, told_word
 from mend.server.transcript_line import Line, Tone
 from mend.server.transcript_words import (
     by,
-    deed_text,
     finished_text,
+    told_deed,
     told_missing,
     told_start,
     why_aborted,
@@ -131,6 +131,7 @@ class Transcript:
         | ev.PushEnded
         | ev.SiteOpened
         | ev.SiteGivenBack
+        | ev.SiteIntervention
         | ev.SiteRestarted
         | ev.SiteClosed
         | ev.RequestChanged
@@ -338,10 +339,7 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.InterventionDone) -> list[Line]:
-        text = deed_text(event.intervention)
-        if not event.ok:
-            text = f"{text}: in vain, {event.detail}"
-        return [_line(event, f"person ({event.by})", text, Tone.DEED)]
+        return [_line(event, f"person ({event.by})", told_deed(event), Tone.DEED)]
 
     # --- Robots -------------------------------------------------------------------------------
 

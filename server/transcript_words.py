@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Literal, Protocol
 from uuid import UUID
 
+from mend.dialogue.spoken import called
 from mend.server.access.principal import RESERVED
 from mend.server.journal import events as ev
 from mend.tasks.intervention import Act, Intervention
@@ -73,9 +74,17 @@ def deed_text(intervention: Intervention) -> str:
     )
     if intervention.act is Act.STEAL and intervention.manner == "pull":
         text = f"pulls {intervention.object} out of the gripper"
+    if intervention.act is Act.CHARGE and intervention.object:
+        text = f"plugs {called(intervention.object)} in"
     if intervention.act is Act.RELEASE and intervention.object and intervention.place is None:
         text = f"puts {intervention.object} aside"
     return text
+
+
+def told_deed(event: ev.InterventionDone | ev.SiteIntervention) -> str:
+    """What a person did, and why in vain, if so."""
+    text = deed_text(event.intervention)
+    return text if event.ok else f"{text}: in vain, {event.detail}"
 
 
 def finished_text(missing: Sequence[ev.MissingPart], unseen: Sequence[ev.UnseenPart] = ()) -> str:

@@ -94,7 +94,7 @@ class PendingInterventions:
             for each in self._queued
             if each.robot != robot
             or each.do.act is Act.RELEASE
-            or each.do.object not in (None, handled)
+            or each.do.object not in (None, handled, robot)
         ]
 
     def take_due(self, time_s: float, progress: TaskProgress | None) -> list[PersonAction]:

@@ -31,13 +31,15 @@ TELL_PLACE = "tell_place"
 class Promise:
     """What was promised: `help` is a dialogue's word for it (`place`, `put_back`, ...).
 
-    `in_the_way` is the part, or the robot, that is to be cleared out of the way, if it is one.
+    `in_the_way` is the part, or the robot, that is to be cleared out of the way, if it is one;
+    `robot` the one that it was promised to.
     """
 
     help: str
     object: str | None
     place: str | None
     in_the_way: str | None = None
+    robot: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +81,9 @@ def deed(
         )
     if act in (Act.PUT_IN, Act.TAKE_OUT):
         return KeptPromise(Intervention(act=act, object=promise.object), delay_s)
-    if act in (Act.UNCOVER, Act.CHARGE, Act.SEND_PERSON):
+    if act is Act.CHARGE:
+        return KeptPromise(Intervention(act=act, object=promise.robot), delay_s)
+    if act in (Act.UNCOVER, Act.SEND_PERSON):
         return KeptPromise(Intervention(act=act), delay_s)
     if promise.object is None:
         return None

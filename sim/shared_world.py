@@ -47,8 +47,12 @@ class SharedWorld:
         return self._surroundings.world
 
     def _tell(self, robot: str, done: Intervened) -> None:
-        """Report what people did once, as the robot that it was for, else as the first."""
-        self._by_name.get(robot, self._agents[0]).report(done)
+        """Report what people did once, as the robot that it was for, else as one that is busy.
+
+        What a robot with a task tells is told in that.
+        """
+        busy = (agent for agent, its in zip(self._agents, self._robots, strict=True) if its.busy)
+        self._by_name.get(robot, next(busy, self._agents[0])).report(done)
 
     @property
     def agents(self) -> Sequence[SimulatedAgent]:

@@ -35,7 +35,7 @@ class Act(StrEnum):
     TAKE_OUT = "take_out"
     """Take out of a robot's basket what it hands over."""
     CHARGE = "charge"
-    """Plug in robots that stand with little left in their batteries."""
+    """Plug in a robot that stands with little left in its battery, or all of them."""
     BAR = "bar"
     """Bar a way of a building: lock its doors, or put things right across it."""
     CLEAR = "clear"
@@ -73,11 +73,12 @@ class Intervention(StrictModel):
 
     `object` is required by every act but `block`, `release`, `cover`, `uncover`, `charge`,
     `send_person`, `bar`, `clear`, `misdirect`, and `put_in` and `take_out`, which are about any
-    robot that asks for it where they name none; `place` (a name of the scene) by `place`; `to` by
-    `move`. A `release` with both `object` and `place` frees that place as well, one with an
-    `object` alone puts that aside. `manner` says how `steal` takes the object: `vanish` at once, or
-    `pull` it out of the gripper by force. `between`: the neighbouring places of a building whose
-    way is to be barred, or cleared; `elevator`: the one of a building that is misdirected.
+    robot that asks for it where they name none, as `charge` is about all robots; `place` (a name of
+    the scene) by `place`; `to` by `move`. A `release` with both `object` and `place` frees that
+    place as well, one with an `object` alone puts that aside. `manner` says how `steal` takes the
+    object: `vanish` at once, or `pull` it out of the gripper by force. `between`: the neighbouring
+    places of a building whose way is to be barred, or cleared; `elevator`: the one of a building
+    that is misdirected.
     """
 
     act: Annotated[Act, Field(strict=False)]

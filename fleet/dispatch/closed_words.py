@@ -17,9 +17,14 @@ def with_closed(
     if WHILE_OPEN not in told:
         return told
     closed = _some(_words(building, closed_until_s))
-    hours = _some(_hours(building))
     told += f"; found closed: {closed}" if closed else ""
-    return told + (f"; doors with hours: {hours}" if hours else "")
+    return told + (f"; {hours}" if (hours := told_hours(building)) else "")
+
+
+def told_hours(building: Building) -> str:
+    """Which doors of a building have hours, and when they are open; nothing where none has."""
+    hours = _some(_hours(building))
+    return f"doors with hours: {hours}" if hours else ""
 
 
 def _some(words: Iterator[str]) -> str:

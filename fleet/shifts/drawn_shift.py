@@ -14,6 +14,7 @@ from typing import TypeVar
 from mend.documents.problem import list_names
 from mend.errors import WrongInputError
 from mend.fleet.dispatch.booking import AnyRequest
+from mend.fleet.dispatch.closed_words import told_hours
 from mend.fleet.dispatch.setting import FleetSetting, ServiceRobot
 from mend.fleet.happenings import (
     Cancelled,
@@ -285,7 +286,11 @@ class _Drawing:
         """Rooms and where robots park, also chargers where there are few; of what they get to."""
         reached = [each for each in self._goals if self._is_reached(each)]
         if lost := [each for each in self._goals if each not in reached]:
-            self._notes.append(f"robots do not get to {list_names(lost)}, where nobody asks then")
+            hours = told_hours(self._building)
+            at_all_times = f" at all times ({hours})" if hours else ""
+            self._notes.append(
+                f"robots do not get to {list_names(lost)}{at_all_times}, where nobody asks then"
+            )
         of_kind = self._building.of_kind
         rooms = {*of_kind(PlaceKind.ROOM), *of_kind(PlaceKind.PARKING)}
         wanted = [each for each in reached if each in rooms]

@@ -115,9 +115,16 @@ class Shift:
             if each.at_s > now_s:
                 what = f"'happenings.{number}' ({each.kind}, at {each.at_s:g} s)"
                 self._told.say(f"{what} did not come: everything was over before", now_s)
+            elif isinstance(each, WrongFloor):
+                self._tell_if_nobody_rode(each, now_s)
         for failing in self._failing:
             if failing.looks:
                 self._told.say(failing.why_none(now_s), now_s)
+
+    def _tell_if_nobody_rode(self, pressed: WrongFloor, now_s: float) -> None:
+        if not self._told.was_at_wrong_floor(pressed.elevator, pressed.at_s):
+            since = f"since {pressed.at_s:g} s, when another button was pressed in it"
+            self._told.say(f"{pressed.elevator} took no robot to a wrong floor {since}", now_s)
 
     def _end_if_over(self) -> None:
         if not self._to_come and not self._told.open:

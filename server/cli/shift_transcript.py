@@ -9,9 +9,11 @@ from mend.fleet.requests import STATUS, RequestStatus
 from mend.server.journal import events as ev
 from mend.server.transcript import Transcript
 from mend.server.transcript_line import Tone
+from mend.server.transcript_words import told_deed
 
 _TOLD = (Tone.FAULT, Tone.SAID, Tone.ASKED, Tone.ANSWERED, Tone.DEED, Tone.SETBACK)
 """Of what robots do in their legs only what is said, and why, is told."""
+_WRONG_FLOOR = "wrong_floor"
 
 
 class ShiftTranscript:
@@ -24,6 +26,7 @@ class ShiftTranscript:
         self.ended: dict[str, str] = {}
         self._transcripts: dict[UUID, tuple[Transcript, float]] = {}
         self._now_s = 0.0
+        self._wrong_floors: list[tuple[float, str]] = []
 
     def booked(self, request: str) -> None:
         """A request has been made, and is not over."""
@@ -46,6 +49,8 @@ class ShiftTranscript:
                 self.say(f"plan {event.number}: {event.reason}{others}", event.at_s)
             case ev.FleetTold():
                 self.say(f"{event.finder or 'operator'} {event.told}", event.at_s)
+            case ev.SiteIntervention():
+                self.say(f"  person ({event.by}): {told_deed(event)}", event.at_s)
             case ev.RunStarted():
                 since_s = self._now_s if event.at_s is None else event.at_s
                 self._transcripts[event.run] = Transcript(), since_s
@@ -53,6 +58,13 @@ class ShiftTranscript:
                 self.say(f"{event.robots[0]} begins to {does}", since_s)
             case _ if event.run in self._transcripts:
                 self._tell_of_run(event, *self._transcripts[event.run])
+
+    def was_at_wrong_floor(self, elevator: str, since_s: float) -> bool:
+        """Whether a robot has said since then that an elevator had taken it to a wrong floor."""
+        return any(
+            at_s >= since_s and told.startswith(f"{elevator} ")
+            for at_s, told in self._wrong_floors
+        )
 
     def sum_up(self) -> bool:
         """Say what the shift came to; whether everything was done, or not wanted any more."""
@@ -93,6 +105,8 @@ class ShiftTranscript:
             self.open.add(event.request)
 
     def _tell_of_run(self, event: ev.Event, transcript: Transcript, since_s: float) -> None:
+        if isinstance(event, ev.IssueRaised) and event.issue == _WRONG_FLOOR and event.detection:
+            self._wrong_floors.append((since_s + event.time, event.detection.explanation))
         for line in transcript.lines(event):
             if line.tone in _TOLD:
                 by = f"{line.speaker}: " if line.speaker else ""

@@ -39,7 +39,11 @@ class Promises:
         if raised.detection is not None and raised.detection.robot is not None:
             in_the_way = raised.detection.robot
         promise = Promise(
-            str(awaiting.help), raised.item or raised.object, raised.place, in_the_way
+            str(awaiting.help),
+            raised.item or raised.object,
+            raised.place,
+            in_the_way,
+            proxy.robot,
         )
         finished = state.tree.finished_objects()
         # Nobody takes for the promised object what stands finished at its place.

@@ -15,11 +15,13 @@ from mend.robots.link.messages import (
     Held,
     Hello,
     Holding,
+    Intervened,
     MakeWay,
     NoteTaken,
     Poses,
     Report,
 )
+from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal, Receipt
 from mend.server.poses.bases import SeenBase, in_scene
 from mend.server.robots.registry import RobotRegistry
@@ -58,13 +60,16 @@ class Site:
         registry: RobotRegistry,
         journal: Journal,
         restarted: Callable[[str], None],
+        acted: Callable[[Intervened, float], ev.Event],
     ) -> None:
-        """`open_world` makes the world, given what is to be told of a robot that is lost."""
+        """`open_world` makes the world, given what is to be told of a robot that is lost; `acted`
+        the event of what a person did at a moment of its clock (s)."""
         self.id = site
         self.world = open_world(self._lost)
         self._registry = registry
         self._journal = journal
         self._restarted = restarted
+        self._acted = acted
         self._frames = dict(robots)
         self._resting = {name: self._at_rest(name) for name in robots}
         self._seen_at: dict[str, Point] = {}
@@ -308,7 +313,11 @@ class Site:
         self._restarts = 0
         self.world.time.heard(report.time)
         world = None if self.forgotten else report.world
-        entry = Entry(receipt=receipt, world_run=None if world is None else self.id, world=world)
+        done = (
+            [self._acted(report.body, report.time)] if isinstance(report.body, Intervened) else []
+        )
+        kept_as = None if world is None else self.id
+        entry = Entry(events=done, receipt=receipt, world_run=kept_as, world=world)
         await self._journal.append(entry, patient=True)
         proxy = self._resting.get(robot)
         if proxy is None:

@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from mend.errors import ConflictError, NotFoundError, WrongInputError
+from mend.robots.link.messages import Intervened
 from mend.server.journal import events as ev
 from mend.server.journal.journal import (
     Document,
@@ -206,8 +207,19 @@ class Sites:
         def open_world(lost: Callable[[str, str], None]) -> RunningWorld:
             return RunningWorld(self._launch, self._journal, self._names, world, id_, setup, lost)
 
-        restarted = partial(self._restarted, id_)
-        return Site(id_, frames, open_world, self._registry, self._journal, restarted)
+        restarted, acted = partial(self._restarted, id_), partial(self._acted, id_)
+        return Site(id_, frames, open_world, self._registry, self._journal, restarted, acted)
+
+    def _acted(self, site: UUID, done: Intervened, at_s: float) -> ev.SiteIntervention:
+        return ev.SiteIntervention(
+            wall_time=self._utc_now(),
+            site=site,
+            at_s=at_s,
+            intervention=done.intervention,
+            by=done.by,
+            ok=done.ok,
+            detail=done.detail,
+        )
 
     def _restarted(self, site: UUID, reason: str) -> None:
         event = ev.SiteRestarted(wall_time=self._utc_now(), site=site, reason=reason)

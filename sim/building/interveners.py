@@ -72,7 +72,7 @@ class Interveners:
             case Act.TAKE_OUT:
                 return self.goods.take_out(intervention.object, self._stands_at)
             case Act.CHARGE:
-                return self._plug_in()
+                return self._plug_in(intervention.object)
             case Act.BAR | Act.CLEAR as act:
                 assert intervention.between is not None, "checked before"
                 return self._bar_or_clear(act, intervention.between)
@@ -247,13 +247,21 @@ class Interveners:
             return "no robot that stands waits for anybody"
         return next((each for each in told if each), "")
 
-    def _plug_in(self) -> str:
-        """Somebody plugs in all robots that stand with little left."""
+    def _plug_in(self, named: str | None) -> str:
+        """Somebody plugs in the robot that is named, or all, that stand with little left."""
+        if named is not None and named not in self.names:
+            return f"there is no robot '{named}'"
         low = [
             battery
-            for robot, battery in zip(self.crowd.robots, self.batteries, strict=True)
-            if battery.share < LOW and self._stands(robot)
+            for name, robot, battery in zip(
+                self.names, self.crowd.robots, self.batteries, strict=True
+            )
+            if named in (None, name) and battery.share < LOW and self._stands(robot)
         ]
         for each in low:
             each.plugged = True
-        return "" if low else "no robot that stands has little left in its battery"
+        if low:
+            return ""
+        if named is None:
+            return "no robot that stands has little left in its battery"
+        return "the robot does not stand with little left in its battery"

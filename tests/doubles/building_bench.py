@@ -1,5 +1,6 @@
 """Robots in a made-up building, with what they report kept for a test."""
 
+from collections.abc import Sequence
 from typing import Any, TypeVar
 
 from mend.maps.building.building import Building
@@ -11,6 +12,7 @@ from mend.sim.building.world import BuildingWorld
 from mend.sim.shared_world import SharedWorld
 from mend.sim.world import WorldSetup
 from mend.tasks.frames import frames_of
+from mend.tasks.scenario import ScriptedIntervention
 from mend.tasks.scene import Scene
 
 LONGEST_S = 300.0
@@ -42,6 +44,7 @@ class BuildingBench:
         blocked_hallways: float = 0.0,
         no_shows: float = 0.0,
         dawdling: float = 0.0,
+        interventions: Sequence[ScriptedIntervention] = (),
         snapshot: dict[str, Any] | None = None,
     ) -> None:
         self.scene = scene or scene_of(made_up(), "office", robots)
@@ -50,6 +53,7 @@ class BuildingBench:
             scene=self.scene,
             seed=seed,
             speed=None,
+            interventions=list(interventions),
             snapshot=snapshot,
             options={
                 "shut_doors": shut_doors,

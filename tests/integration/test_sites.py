@@ -17,7 +17,7 @@ from touching_robots import touching_robots
 from untruths import kinds_of
 
 from mend.errors import ConflictError, NotFoundError, WrongInputError
-from mend.robots.link.messages import Hello, Holding, Report
+from mend.robots.link.messages import Hello, Holding, Intervened, Report
 from mend.server.client import MendClient
 from mend.server.client_errors import RefusedError
 from mend.server.composition import Service, open_service
@@ -32,6 +32,7 @@ from mend.server.runtime.views import RunStatus
 from mend.server.settings import Settings
 from mend.server.sites.requests import SiteRequest
 from mend.server.sites.views import SiteView
+from mend.tasks.intervention import Act, Intervention
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "two_arms"
 
@@ -240,6 +241,22 @@ async def test_a_world_that_ends_while_nobody_uses_it_is_started_again(tmp_path:
         await until_told(found, site.id, "site_restarted")
         events = await done(found, await begin(found, "red_near", site.id))
     assert not [each for each in events if isinstance(each, ev.StepStarted)]
+
+
+async def test_what_people_do_while_no_run_has_a_robot_is_told_of_the_site(
+    tmp_path: Path,
+) -> None:
+    async with service(tmp_path) as found:
+        view = await open_bench(found)
+        stolen = Intervention(act=Act.STEAL, object="red_box")
+        body = Intervened(intervention=stolen, by="scenario", ok=False, detail="it is not there")
+        receipt = Receipt(robot(view, "left"), "of the site", 1)
+        site = found.sites._sites[view.id]
+        await site.robot_reported(receipt.robot, Report(seq=1, time=7.0, body=body), receipt)
+        told = (await found.sites.events(view.id, 0, 100))[-1]
+    assert isinstance(told, ev.SiteIntervention)
+    assert (told.at_s, told.intervention, told.by) == (7.0, stolen, "scenario")
+    assert (told.ok, told.detail) == (False, "it is not there")
 
 
 async def test_a_world_that_ends_just_before_a_run_borrows_its_robots_is_started_again(

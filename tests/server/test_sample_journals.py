@@ -38,6 +38,7 @@ OF_NO_RUN = {
     "signed_out",
     "site_closed",
     "site_given_back",
+    "site_intervention",
     "site_opened",
     "site_restarted",
 }

@@ -1,11 +1,15 @@
 """Each line of a shift has the moment before it at which that happened, by the site's clock."""
 
+from datetime import UTC, datetime
+
 import pytest
-from fleet_events import LegMaker, asked
+from fleet_events import SITE, LegMaker, asked
 
 from mend.fleet.requests import LegAction
+from mend.robots.link.messages import LASER, Detection
 from mend.server.cli.shift_transcript import ShiftTranscript
 from mend.server.journal import events as ev
+from mend.tasks.intervention import Act, Intervention
 
 RUN = LegMaker("r1", 1, "tea", LegAction.HAND_OVER).run()
 
@@ -45,3 +49,29 @@ def test_what_whoever_follows_it_says_is_told_when_they_do(
         "  1850.0",
         "  1851.0",
     ]
+
+
+def test_what_people_do_while_no_robot_has_a_task_is_told(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    barred = ev.SiteIntervention(
+        wall_time=datetime(2026, 1, 1, tzinfo=UTC),
+        site=SITE,
+        at_s=7.0,
+        intervention=Intervention(act=Act.BAR, between=("F1/a", "F1/b")),
+        by="scenario",
+    )
+    in_vain = barred.model_copy(update={"ok": False, "detail": "somebody is there"})
+    told = "     7.0    person (scenario): bars the way between F1/a and F1/b"
+    assert printed(capsys, barred, in_vain) == [told, f"{told}: in vain, somebody is there"]
+
+
+def test_a_wrong_floor_is_one_of_the_elevator_that_the_robot_names() -> None:
+    told = ShiftTranscript(["tea"])
+    opened = Detection(camera=LASER, explanation="lift1 has opened at F3, and I must get to F2")
+    raised = RUN.raised(9.0, "wrong_floor").model_copy(update={"detection": opened})
+    for each in (RUN.started().model_copy(update={"at_s": 100.0}), raised):
+        told.tell(each)
+    assert told.was_at_wrong_floor("lift1", 50.0)
+    assert not told.was_at_wrong_floor("lift1", 110.0)
+    assert not told.was_at_wrong_floor("lift", 50.0)

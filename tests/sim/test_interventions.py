@@ -13,6 +13,7 @@ from mend.tasks.intervention import Act, Intervention
         (Intervention(act=Act.PUT_BACK, object="cup"), False),
         (Intervention(act=Act.PUT_BACK, object="bowl"), True),
         (Intervention(act=Act.RELEASE, object="cup", place="left"), True),
+        (Intervention(act=Act.CHARGE, object="arm"), False),
     ],
 )
 def test_only_who_stands_in_the_way_acts_after_the_robot_saw_it_done(

@@ -93,6 +93,11 @@ def test_a_part_in_the_way_is_what_is_put_aside() -> None:
     assert done == KeptPromise(Intervention(act=Act.RELEASE, object="blue_cup"), 3.0)
 
 
+def test_the_robot_that_asks_for_current_is_plugged_in() -> None:
+    done = kept(Promise("charge", None, "charger", robot="robot2"), Person())
+    assert done == KeptPromise(Intervention(act=Act.CHARGE, object="robot2"), 3.0)
+
+
 def test_nothing_can_be_placed_where_no_object_was_spoken_of() -> None:
     assert kept(Promise("place", None, None), Person()) is None
 

@@ -108,6 +108,7 @@ from mend.server.journal.events.site_events import (
     SiteClosed,
     SiteEvent,
     SiteGivenBack,
+    SiteIntervention,
     SiteOpened,
     SiteRestarted,
 )
@@ -213,6 +214,7 @@ __all__ = [
     "SiteClosed",
     "SiteEvent",
     "SiteGivenBack",
+    "SiteIntervention",
     "SiteOpened",
     "SiteRestarted",
     "SteeringEvent",

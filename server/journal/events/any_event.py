@@ -81,6 +81,7 @@ from mend.server.journal.events.service_events import (
 from mend.server.journal.events.site_events import (
     SiteClosed,
     SiteGivenBack,
+    SiteIntervention,
     SiteOpened,
     SiteRestarted,
 )
@@ -161,6 +162,7 @@ AnyEvent = Annotated[
     | PushEnded
     | SiteOpened
     | SiteGivenBack
+    | SiteIntervention
     | SiteRestarted
     | SiteClosed
     | RequestChanged

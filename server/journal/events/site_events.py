@@ -4,6 +4,7 @@ from typing import Any, Literal
 from uuid import UUID
 
 from mend.server.journal.events.event import Author, ServiceEvent
+from mend.tasks.intervention import Intervention
 
 
 class SiteEvent(ServiceEvent):
@@ -42,6 +43,20 @@ class SiteRestarted(SiteEvent):
 
     type: Literal["site_restarted"] = "site_restarted"
     reason: str
+
+
+class SiteIntervention(SiteEvent):
+    """A person did something in a site's world, told by a robot that no run had.
+
+    `at_s` is of the site's clock; `by` says who (scenario, helper, api, ...).
+    """
+
+    type: Literal["site_intervention"] = "site_intervention"
+    at_s: float
+    intervention: Intervention
+    by: str
+    ok: bool = True
+    detail: str = ""
 
 
 class SiteClosed(SiteEvent):

@@ -139,6 +139,19 @@ def test_a_place_that_no_robot_gets_to_is_told_and_never_asked_for() -> None:
     assert all("G/4" not in each.places for each in shift.document.requests)
 
 
+def test_a_place_behind_a_door_with_hours_is_told_with_them() -> None:
+    row = walled_row(doors=True)
+    floor = row.floors["G"]
+    hours = {"d": floor.doors["d"].model_copy(update={"open_s": ((100.0, 500.0),)})}
+    open_at_times = floor.model_copy(update={"doors": hours})
+    building = Building(row.document.model_copy(update={"floors": {"G": open_at_times}}))
+    shift = drawn_shift(building, {"r": "G/1"}, goals_in(building), 1, LASTS_S)
+    assert (
+        "robots do not get to 'G/3', 'G/4' at all times "
+        "(doors with hours: d on G (open 100 to 500 s)), where nobody asks then"
+    ) in shift.notes
+
+
 def test_a_building_without_two_rooms_is_refused() -> None:
     row = walled_row(doors=False)
     with pytest.raises(WrongInputError, match=r"'row' has one room.*needs two"):

@@ -7,10 +7,12 @@ from building_bench import BuildingBench
 from mend.maps.building.building import Building, BuildingDocument, DoorOpening
 from mend.maps.building.clearance import apart_m
 from mend.maps.building.random_building import random_building
+from mend.robots.link.messages import Intervened
 from mend.sim.building.barriers import Barriers
 from mend.sim.building.doors import WorldDoors
 from mend.sim.building.scene import scene_of
 from mend.tasks.intervention import Act, Intervention
+from mend.tasks.scenario import ScriptedIntervention
 from mend.tasks.scene import Base
 
 OFFICE = Building(random_building(11, 2, 30))
@@ -140,3 +142,12 @@ def test_who_helps_is_told_that_a_door_stays_shut(hours: tuple[tuple[float, floa
         assert not bench.world.intervene(BAR)
     told = "the door that a robot stands before is locked, or not to be opened by now"
     assert bench.world.intervene(HELP) == told
+
+
+def test_what_a_script_does_is_told_by_a_robot_that_has_a_task() -> None:
+    lane = ("F1/101", "F1/102")
+    script = ScriptedIntervention(at_s=0.5, do=Intervention(act=Act.BAR, between=lane))
+    bench = BuildingBench(robots=2, interventions=[script])
+    bench.go("robot2", "F1-103")
+    bench.run_until(Intervened)
+    assert [name for name, body in bench.reports if isinstance(body, Intervened)] == ["robot2"]

@@ -142,3 +142,20 @@ def test_a_robot_says_what_its_battery_holds_unless_it_never_runs_out(battery_wh
     share = bench.world.batteries[0].share
     assert robot.poses().battery == (share if battery_wh else None)
     assert (share < 1.0) is (battery_wh > 0.0)
+
+
+def test_who_is_asked_by_one_robot_plugs_in_no_other_one() -> None:
+    bench = BuildingBench(robots=2, battery_wh=20.0)
+    for battery in bench.world.batteries:
+        battery.restore(battery.snapshot().model_copy(update={"energy_j": 3600.0}))
+
+    def plugged(robot: str) -> str:
+        return bench.world.intervene(Intervention(act=Act.CHARGE, object=robot))
+
+    assert plugged("robot2") == ""
+    assert [each.plugged for each in bench.world.batteries] == [False, True]
+    bench.world.batteries[1].restore(
+        bench.world.batteries[1].snapshot().model_copy(update={"energy_j": 72000.0})
+    )
+    assert plugged("robot2") == "the robot does not stand with little left in its battery"
+    assert plugged("robot9") == "there is no robot 'robot9'"
