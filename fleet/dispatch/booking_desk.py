@@ -100,13 +100,12 @@ class BookingDesk:
                 if not series.request.recurs(series.booked + 1):
                     series.over = True
                     break
-                request = series.request.occurrence(series.booked + 1)
                 if series.is_missed(self._state.fleet.now_s):
                     series.booked += 1
                     continue
-                if request.earliest_s > self._state.fleet.now_s + self._state.policy.horizon_s:
+                if self._books_next_s(series) > self._state.fleet.now_s:
                     break
-                name = series.next_name()
+                name, request = series.next_name(), series.request.occurrence(series.booked + 1)
                 series.booked += 1
                 self._book(name, request)
 
@@ -161,13 +160,18 @@ class BookingDesk:
         stops = stops_by_booking(self._state.fleet)
         return view_of(self._state.bookings[name], stops).expected
 
-    def recurs_s(self) -> list[float]:
-        """When the next occurrences of what recurs begin that are not booked yet."""
+    def books_s(self) -> list[float]:
+        """When the next occurrences of what recurs are to be booked."""
         return [
-            series.request.occurrence(series.booked + 1).earliest_s
-            for series in self._state.series.values()
-            if not series.over
+            self._books_next_s(series) for series in self._state.series.values() if not series.over
         ]
+
+    def _books_next_s(self, series: Series) -> float:
+        recurrence, policy = series.request.recurrence, self._state.policy
+        assert recurrence is not None, "it is of a series"
+        # A plan that holds a day of what recurs each minute takes minutes to make.
+        ahead_s = min(policy.horizon_s, policy.occurrences * recurrence.every_s)
+        return series.request.occurrence(series.booked + 1).earliest_s - ahead_s
 
 
 def _at_its_time(request: AnyRequest, before: AnyRequest) -> AnyRequest:

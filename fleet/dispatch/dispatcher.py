@@ -282,6 +282,8 @@ class Dispatcher:
 
     def view(self, name: str) -> RequestView:
         """How far a request has come. Raises `NotFoundError`."""
+        if name in self._state.series:
+            raise NotFoundError(f"the request '{name}' recurs: look at '{name}/1' and so on")
         if name not in self._state.bookings:
             raise NotFoundError(f"there is no request '{name}'")
         return view_of(self._state.bookings[name], stops_by_booking(self._state.fleet))
@@ -305,7 +307,7 @@ class Dispatcher:
         """When `legs_to_begin` has to be asked again, if nothing happens before."""
         policy = self._state.policy
         times = [*self._legs.times_s(), *self.closed_until_s().values()]
-        times += [begins_s - policy.horizon_s for begins_s in self._desk.recurs_s()]
+        times += self._desk.books_s()
         if self._waits():
             times.append(self._state.tried_s + policy.retry_waiting_s)
         return max(self.now_s, min(times)) if times else None

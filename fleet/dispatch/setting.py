@@ -42,8 +42,9 @@ class Policy(StrictModel):
     no place in the plan is tried again every `retry_waiting_s`, for `patience_s` at most. What has
     no latest moment of its own has to be done within `longest_s`. What robots found is forgotten
     after `forget_s`. Robots leave `reserve_s` earlier than they must. What recurs is planned
-    `horizon_s` ahead. The next possible time lasts `grace_s` longer than it must. So many closed
-    requests and changes of plans are kept as `kept` says.
+    `horizon_s` ahead, but not more than the next `occurrences`. The next possible time lasts
+    `grace_s` longer than it must. So many closed requests and changes of plans are kept as `kept`
+    says.
     """
 
     max_attempts: Annotated[int, Field(ge=1, le=100)] = 3
@@ -54,6 +55,7 @@ class Policy(StrictModel):
     forget_s: Span = 1800.0
     reserve_s: Handling = 30.0
     horizon_s: Span = 24 * 3600.0
+    occurrences: Annotated[int, Field(ge=1, le=1000)] = 12
     grace_s: Span = 120.0
     kept: Annotated[int, Field(ge=1, le=1_000_000)] = 1000
 

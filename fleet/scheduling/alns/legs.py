@@ -6,6 +6,8 @@ from typing import NamedTuple
 from mend.fleet.scheduling.alns.driving import arrival, latest_leave
 from mend.fleet.scheduling.alns.plan import Plan
 from mend.fleet.scheduling.alns.problem_arrays import (
+    DROP,
+    GIVE,
     NOBODY,
     UNREACHABLE,
     ProblemArrays,
@@ -173,7 +175,7 @@ def _unload_after(
     skipped_m = problem.distance_m[plan.tasks[plan.stops[row, loaded.at].node].place, following]
     lead_m = loaded.there_m + problem.distance_m[loaded.place, following] - skipped_m
     opening = problem.weight_robots if last == 1 else 0.0
-    here, free_s = loaded.place, loaded.free_s
+    here, free_s, pushed = loaded.place, loaded.free_s, 0.0
     for at in range(loaded.at, last):
         node = plan.stops[row, at + 1].node
         following = plan.tasks[node].place
@@ -182,7 +184,7 @@ def _unload_after(
             metres += loaded.there_m - skipped_m
         else:
             metres += lead_m - problem.distance_m[here, following]
-        extra = problem.metre * metres + opening
+        extra = problem.metre * metres + opening + pushed
         if at >= problem.robots[robot].held and extra < _worst_kept(legs, wanted):
             ready_s = max(arrival(problem, robot, here, target, free_s), from_s)
             done_s = ready_s + lasts_s
@@ -195,6 +197,7 @@ def _unload_after(
                 and arrival(problem, robot, target, following, done_s)
                 <= plan.stops[row, at + 1].latest_s + SEARCH_S
             ):
+                extra += _push_back(problem, plan, row, (at, target, done_s))
                 wanted_s = loaded.until_s
                 if at > loaded.at:
                     wanted_s = min(wanted_s, loaded.leave_s)
@@ -208,10 +211,44 @@ def _unload_after(
         )
         if begin_s > plan.stops[row, at + 1].latest_s + SEARCH_S:
             return
+        pushed += _delay_cost(problem, node, begin_s, plan.stops[row, at + 1].begin_s)
         free_s = begin_s + problem.nodes[node].service_s
         if free_s > until_s + SEARCH_S:
             return
         here = following
+
+
+@compiled
+def _push_back(problem: ProblemArrays, plan: Plan, row: int, left: tuple[int, int, float]) -> float:
+    """What it costs that a robot is free only at a time, at a place, after a position of its row.
+
+    What other robots do later then is left out.
+    """
+    at, here, free_s = left
+    if problem.timeless:
+        return 0.0
+    robot, cost = plan.rows[row].owner, 0.0
+    for after in range(at + 1, plan.rows[row].length):
+        stop = plan.stops[row, after]
+        following = plan.tasks[stop.node].place
+        begin_s = arrival(problem, robot, here, following, free_s)
+        if begin_s <= stop.begin_s:
+            return cost
+        cost += _delay_cost(problem, stop.node, begin_s, stop.begin_s)
+        here, free_s = following, begin_s + problem.nodes[stop.node].service_s
+    return cost
+
+
+@inlined
+def _delay_cost(problem: ProblemArrays, node: int, begin_s: float, before_s: float) -> float:
+    """What it costs that a node begins then, and not at the time of before."""
+    kind, price = problem.nodes[node].kind, 0.0
+    if kind in (DROP, GIVE):
+        price += problem.weight_completion * (begin_s - before_s)
+    due_s = problem.nodes[node].due_s
+    if begin_s > due_s:
+        price += problem.weight_lateness * (begin_s - max(before_s, due_s))
+    return price
 
 
 @inlined

@@ -1,5 +1,7 @@
 """A dispatcher of one building: what is booked, what robots are to do, and what fails."""
 
+from collections.abc import Callable
+
 import pytest
 from dispatch_office import (
     DONE,
@@ -15,6 +17,7 @@ from dispatch_office import (
 )
 
 from mend.errors import ConflictError, NotFoundError, WrongInputError
+from mend.fleet.dispatch.booking import AnyRequest
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found, LegEnd, LegOutcome
 from mend.fleet.dispatch.setting import Policy
@@ -159,6 +162,36 @@ def test_what_recurs_is_booked_ahead_of_its_times() -> None:
     assert {view.status for view in dispatcher.views()} == {RequestStatus.CANCELLED}
     with pytest.raises(ConflictError, match="is over"):
         dispatcher.cancel("round", 3500.0)
+
+
+def test_what_recurs_often_is_booked_some_times_ahead_and_each_is_at_its_time() -> None:
+    dispatcher = dispatcher_for("a")
+    dispatcher.submit(visit("round", place="c", recurrence=Recurrence(every_s=60.0)), 0.0)
+    ahead = Policy().occurrences
+    assert len(dispatcher.views()) == ahead + 1
+    for view in dispatcher.views()[1:]:
+        assert view.expected is not None
+        assert view.expected.done_s == view.request.earliest_s
+    assert dispatcher.wakes_s() is not None
+    dispatcher.legs_to_begin(60.0)
+    assert len(dispatcher.views()) == ahead + 2
+
+
+@pytest.mark.parametrize("kind", [visit, asked])
+@pytest.mark.parametrize("later_s", [3000.0, 28_800.0])
+def test_what_is_wanted_soon_is_not_put_off_for_what_is_wanted_later(
+    kind: Callable[..., AnyRequest], later_s: float
+) -> None:
+    dispatcher = dispatcher_for("a")
+    dispatcher.submit(kind("mine", earliest_s=60.0), 0.0)
+    mine = dispatcher.view("mine").expected
+    for number in range(4):
+        dispatcher.submit(kind(f"hers{number}", earliest_s=later_s + 600.0 * number), 1.0)
+    assert dispatcher.view("mine").expected == mine
+    for number in range(4):
+        hers = dispatcher.view(f"hers{number}").expected
+        assert hers is not None
+        assert hers.done_s - later_s - 600.0 * number < 120.0
 
 
 # --- legs -----------------------------------------------------------------------------------------
