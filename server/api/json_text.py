@@ -32,7 +32,9 @@ def read_json(body: bytes, most_values: int) -> Any:
         raise
     except UnicodeDecodeError as error:
         raise NotJsonError(f"the body is not UTF-8: byte {error.start} is wrong") from None
-    except (ValueError, RecursionError) as error:
+    except RecursionError:
+        raise NotJsonError("the body has lists or objects too deep within each other") from None
+    except ValueError as error:
         raise NotJsonError(f"the body cannot be read: {error}") from None
     if may_have(body, most_values) and _values(read) > most_values:
         raise TooManyValuesError(f"the body has too many values: it may have {most_values}")

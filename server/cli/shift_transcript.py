@@ -62,8 +62,7 @@ class ShiftTranscript:
     def was_at_wrong_floor(self, elevator: str, since_s: float) -> bool:
         """Whether a robot has said since then that an elevator had taken it to a wrong floor."""
         return any(
-            at_s >= since_s and told.startswith(f"{elevator} ")
-            for at_s, told in self._wrong_floors
+            at_s >= since_s and told.startswith(f"{elevator} ") for at_s, told in self._wrong_floors
         )
 
     def sum_up(self) -> bool:

@@ -50,7 +50,10 @@ class FleetBook:
 
     @property
     def now_s(self) -> float:
-        """The site's clock, as far as it is known: it never goes back."""
+        """The site's clock, as far as it is known.
+
+        It goes back only where the world does, which began again from when it was kept last.
+        """
         return max(self.dispatcher.now_s, self._site.world.time.latest_s)
 
     @property

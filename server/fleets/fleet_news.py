@@ -73,7 +73,7 @@ class FleetNews:
         return ev.LegBegun(
             wall_time=self._utc_now(),
             site=self._site,
-            at_s=self._dispatcher.now_s,
+            at_s=self._now_s(),
             robot=leg.robot,
             number=leg.number,
             booking=leg.booking,
@@ -87,7 +87,7 @@ class FleetNews:
         return ev.LegEnded(
             wall_time=self._utc_now(),
             site=self._site,
-            at_s=self._dispatcher.now_s,
+            at_s=self._now_s(),
             robot=leg.robot,
             number=leg.number,
             booking=leg.booking,
@@ -131,7 +131,7 @@ class FleetNews:
         return ev.RequestChanged(
             wall_time=self._utc_now(),
             site=self._site,
-            at_s=self._dispatcher.now_s,
+            at_s=self._now_s(),
             request=view.name,
             what=view.request.model_dump(mode="json", exclude_none=True),
             status=view.status,

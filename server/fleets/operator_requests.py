@@ -41,6 +41,8 @@ class WayReport(BaseModel):
     def _require_one(self) -> Self:
         if (self.between is None) == (self.elevator is None):
             raise ValueError("expected either the two places of 'between', or an 'elevator'")
+        if self.between is not None and self.between[0] == self.between[1]:
+            raise ValueError(f"a way is between two places, not '{self.between[0]}' twice")
         if self.finding in ("blocked", "door_closed") and self.between is None:
             raise ValueError("an elevator is 'elevator_dead' or 'open'")
         return self

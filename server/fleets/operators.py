@@ -20,9 +20,12 @@ class Operators:
     async def found(self, way: WayReport, author: ev.Author | None) -> None:
         """A way was found blocked, or open.
 
-        Raises as `Dispatcher.found`, and `WrongInputError` where it is to last until what is over.
+        Raises as `Dispatcher.found`, and `WrongInputError` where it is to last until what is over,
+        or there is no such door.
         """
         a, b = way.between or self._stops_of(way.elevator or "")
+        if way.finding == "door_closed":
+            self._require_door(a, b)
         what = f"the way between {a} and {b}" if way.elevator is None else way.elevator
         found = Found(finding=Finding(way.finding), between=(a, b), until_s=way.until_s)
         async with self._book.told():
@@ -32,6 +35,13 @@ class Operators:
             self._book.closed_ways.note(found, author.principal if author and named else None)
             finding = way.finding.replace("_", " ")
             self._note(f"said of {what}: {finding}", author)
+
+    def _require_door(self, a: str, b: str) -> None:
+        building = self._book.dispatcher.building
+        ends = {building.find(a), building.find(b)}
+        for each in building.crossings:
+            if {f"{each.floor}/{end}" for end in each.lane.between} == ends and not each.doors:
+                raise WrongInputError(f"no door is between '{a}' and '{b}': say 'blocked'")
 
     def _require_to_come(self, way: WayReport) -> None:
         if way.until_s is not None and way.until_s <= self._book.shown_s:

@@ -36,9 +36,18 @@ class PlaceNames:
             )
         return self._called[full]
 
+    def home(self, start: str) -> str:
+        """Where a robot is sent that goes back to its first place: there, or as near as it can."""
+        full = self._building.find(start)
+        floor, name = full.split("/", 1)
+        at = self._building.floors[floor].places[name]
+        away = self._away_m(at.x, at.y, self._building.floors[floor].height)
+        return min(((m, each) for m, each in away if each in self._called), default=(0.0, full))[1]
+
     def nearest(self, x: float, y: float, z: float) -> str | None:
-        """The place that is nearest to a position of the scene; None where there is no floor."""
-        return min(self._away_m(x, y, z), default=(0.0, None))[1]
+        """The place that is nearest to a position of the scene; between floors that of them all."""
+        away = self._away_m(x, y, z) or self._away_between_floors_m(x, y, z)
+        return min(away, default=(0.0, None))[1]
 
     def beside(self, x: float, y: float, z: float) -> str | None:
         """The nearest place that robots are sent to, and that one at a position leaves free."""
@@ -63,6 +72,13 @@ class PlaceNames:
         places = self._building.floors[floor].places
         return [
             (math.hypot(each.x - x, each.y - y), f"{floor}/{name}") for name, each in places.items()
+        ]
+
+    def _away_between_floors_m(self, x: float, y: float, z: float) -> list[tuple[float, str]]:
+        return [
+            (math.dist((each.x, each.y, on.height), (x, y, z)), f"{floor}/{name}")
+            for floor, on in self._building.floors.items()
+            for name, each in on.places.items()
         ]
 
 

@@ -114,8 +114,9 @@ class FleetLeg(View):
 class FleetRobot(View):
     """A robot of a fleet: whether it works, where it is, what it has aboard, is at and is to do.
 
-    `out_of_service`: why somebody has taken it out; None where nobody has. `home`: its first place;
-    `run`: which has it now. `battery`: what that holds, as a share; None where it does not run out.
+    `out_of_service`: why somebody has taken it out; None where nobody has. `home`: its first place,
+    or the nearest to which robots are sent; `run`: which has it now. `battery`: what that holds, as
+    a share; None where it does not run out.
     """
 
     robot: str
@@ -201,9 +202,11 @@ def _robots(fleet: "FleetAtWork", dispatcher: "Dispatcher") -> list[FleetRobot]:
     names = list(running.robots)
     aboard: dict[str, list[str]] = {name: [] for name in names}
     for name, item in running.items.items():
-        if item.robot is not None and item.open:
-            aboard[names[item.robot]].append(name)
-    homes = {each.name: dispatcher.building.find(each.start) for each in dispatcher.setting.robots}
+        # Also what a robot still has that works no more, and from which others fetch it.
+        has = item.held_by if item.robot is None else item.robot
+        if has is not None:
+            aboard[names[has]].append(name)
+    homes = {each.name: fleet.places.home(each.start) for each in dispatcher.setting.robots}
     bases = {name: fleet.base(name) for name in names}
     return [
         FleetRobot(

@@ -79,8 +79,8 @@ def test_a_field_that_no_sentence_has_is_refused() -> None:
     assert problems_of(states) == [
         "'text' of state 'first' has the field {colour}; "
         "there are only {again}, {attempt}, {doing}, {fetch}, {go_on}, {guess_1}, {guess_2}, "
-        "{guess_3}, {it}, {item}, {later}, {message}, {name}, {object}, {person}, {place}, {put_in}, "
-        "{robot}, {times}, {why}, {with_object}"
+        "{guess_3}, {it}, {item}, {later}, {message}, {name}, {object}, {person}, {place}, "
+        "{put_in}, {robot}, {times}, {why}, {with_object}"
     ]
 
 

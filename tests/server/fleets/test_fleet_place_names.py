@@ -35,5 +35,16 @@ def test_beside_who_stands_at_a_place_is_the_nearest_other_one_to_which_robots_a
     assert beside in NAMES.names
     other = OFFICE.floors["F1"].places[beside.split("/")[1]]
     assert math.dist((other.x, other.y), where[:2]) >= BESIDE_M
-    assert NAMES.nearest(*where[:2], 1000.0) is None
     assert NAMES.beside(*where[:2], 1000.0) is None
+
+
+def test_between_floors_the_nearest_place_is_one_of_the_floor_that_is_nearer() -> None:
+    stop, height = OFFICE.floors["F1"].places["lift1"], OFFICE.floors["F2"].height
+    assert NAMES.nearest(stop.x, stop.y, 0.45 * height) == "F1/lift1"
+    assert NAMES.nearest(stop.x, stop.y, 0.55 * height) == "F2/lift1"
+
+
+def test_who_began_where_no_robot_is_sent_goes_back_to_the_nearest_place() -> None:
+    assert NAMES.home("F1/101") == "F1/101"
+    passed = OFFICE.of_kind(PlaceKind.WAYPOINT)[0]
+    assert NAMES.home(passed) in NAMES.names

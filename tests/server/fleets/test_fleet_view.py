@@ -76,7 +76,7 @@ async def test_closed_ways_are_told_with_who_found_them_until_they_are_open() ->
 
 async def test_who_found_a_way_closed_is_known_after_a_restart() -> None:
     async with working("a") as work:
-        await work.fleet.operators.found(WayReport(finding="door_closed", between=["b", "c"]), OLGA)
+        await work.fleet.operators.found(WayReport(finding="blocked", between=["b", "c"]), OLGA)
         await work.fleet.stop()
         kept = (await work.journal.documents(KIND))[str(work.site.id)]
         was = FleetRecord.model_validate_json(kept)
@@ -84,7 +84,7 @@ async def test_who_found_a_way_closed_is_known_after_a_restart() -> None:
         work.fleet = _fleet(work.site, work.runs, work.journal, again, was)
         work.fleet.start()
         (closed,) = (await view_of(work)).closed
-        assert (closed.finding, closed.by) == ("door_closed", "olga")
+        assert (closed.finding, closed.by) == ("blocked", "olga")
 
 
 async def test_records_of_an_older_mend_have_neither_errands_nor_closed_ways() -> None:

@@ -6,11 +6,13 @@ from collections.abc import AsyncIterator, Callable, Collection, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import partial
 from typing import Any
 from uuid import UUID
 
 import pytest
 from dispatch_office import asked, dispatcher_for, office, visit
+from pydantic import ValidationError
 
 from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.fleet.dispatch.dispatcher import Dispatcher
@@ -24,6 +26,7 @@ from mend.server.fleets.fleets import KIND
 from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.place_names import PlaceNames
 from mend.server.fleets.request_refused import RequestRefusedError
+from mend.server.fleets.views import FleetView
 from mend.server.journal import events as ev
 from mend.server.journal.sqlite import SqliteJournal
 from mend.server.poses.bases import SeenBase
@@ -546,6 +549,22 @@ async def test_who_fetches_something_says_in_whose_basket_it_is_and_its_robot_is
         assert work.site.taken == {"r0": ["tea"]}
 
 
+async def test_what_a_robot_has_aboard_that_is_out_of_service_is_shown_until_it_is_fetched() -> (
+    None
+):
+    async with working("a", "e") as work:
+        fetching = await _with_tea_aboard_r0_fails(work)
+        assert await _aboard(work) == [["tea"], []]
+        fetching.ended.set_result(("finished", True))
+        await work.runs.nth(4)
+        assert await _aboard(work) == [[], ["tea"]]
+
+
+async def _aboard(work: Work) -> list[list[str]]:
+    view = await work.fleet.read(partial(FleetView.of, work.fleet))
+    return [each.aboard for each in view.robots]
+
+
 async def test_a_robot_that_is_put_back_brings_what_nobody_has_fetched() -> None:
     async with working("a", "e") as work:
         fetching = await _with_tea_aboard_r0_fails(work)
@@ -607,6 +626,16 @@ async def test_a_way_that_somebody_found_blocked_keeps_robots_off_it() -> None:
         await work.fleet.operators.found(WayReport(finding="open", between=["b", "c"]), None)
         await work.fleet.submit(visit(place="d", latest_s=200.0), None)
         assert (await work.runs.nth(1)).parameters == {"place": "d", "near_m": MEETS_M}
+
+
+async def test_a_door_that_is_not_there_is_not_closed() -> None:
+    async with working("a") as work:
+        with pytest.raises(WrongInputError, match="no door is between 'b' and 'c': say 'blocked'"):
+            await work.fleet.operators.found(
+                WayReport(finding="door_closed", between=["b", "c"]), None
+            )
+    with pytest.raises(ValidationError, match="a way is between two places, not 'b' twice"):
+        WayReport(finding="blocked", between=["b", "b"])
 
 
 async def test_a_way_is_not_closed_until_what_is_over() -> None:
