@@ -1,6 +1,7 @@
 """How numeric kernels are compiled."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, TypeVar, cast
 
 import numba
@@ -9,6 +10,8 @@ import numba
 # first call in another thread may be going through: "dictionary changed size during iteration".
 import numba.core.ccallback
 import numba.experimental.function_type
+
+from mend.maps.kernel_cache import KernelCache
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
@@ -20,8 +23,7 @@ def compiled(function: Kernel, **options: Any) -> Kernel:
     of numba's own; a division by zero gives what NumPy gives unless they say otherwise.
     """
     options = {"error_model": "numpy", **options}
-    njit = cast(Any, numba.njit)
-    try:
-        return cast(Kernel, njit(cache=True, **options)(function))
-    except RuntimeError:
-        return cast(Kernel, njit(**options)(function))
+    kernel = cast(Any, numba.njit)(**options)(function)
+    with suppress(RuntimeError):
+        kernel._cache = KernelCache(function)
+    return cast(Kernel, kernel)
