@@ -107,6 +107,11 @@ class Recovery:
         """Whether a search goes on."""
         return self._work is not None
 
+    @property
+    def suspects_elsewhere(self) -> bool:
+        """Whether the last search has found a clearly likelier place, which another may confirm."""
+        return self._won is not None
+
     def open_places(self, episode: Episode) -> list[Found]:
         """The places that explain what is seen and are hardly worse than the best, best first."""
         ranked = _ranked(done(self._weigh(self._open, looks_of(episode, _SCANS_WEIGHED))))

@@ -1,0 +1,40 @@
+"""How much changes from scan to scan where nobody is carried: learned on the way."""
+
+from math import lgamma, log, log1p, pi
+
+from mend.localization.enml.parameters import EnmlParameters
+
+_FIRST_SCANS = 8.0
+"""What the parameters say of it counts for so many scans."""
+
+
+class UsualChange:
+    """Shares that change, less what is recognized, as normal of unknown mean and variance.
+
+    How likely the next one is follows a t distribution (Gelman et al., "Bayesian Data Analysis",
+    section 3.2), of all before it, the latest more. So a change is judged by what is usual around
+    the robot: crowds and bushes are other than walls (Lorden and Pollak 2005, "Nonanticipating
+    estimation applied to sequential analysis and changepoint detection").
+    """
+
+    def __init__(self, parameters: EnmlParameters) -> None:
+        self._parameters = its = parameters
+        self._mean = -its.recognized_share
+        self._variance = its.recognized_spread**2
+        self._scans = _FIRST_SCANS
+
+    def learn(self, change: float, weight: float) -> None:
+        """Take in one more change, as `weight` (0 to 1) scans of which it is known."""
+        self._scans = self._scans * (1.0 - 1.0 / self._parameters.usual_scans) + weight
+        part = weight / self._scans
+        off = change - self._mean
+        self._variance = (1.0 - part) * (self._variance + part * off**2)
+        self._mean += part * off
+
+    def log_density(self, change: float) -> float:
+        """Of a change, for who is not carried."""
+        degrees = self._scans
+        scale = self._variance * (1.0 + 1.0 / self._scans)
+        norm = lgamma((degrees + 1.0) / 2.0) - lgamma(degrees / 2.0)
+        off = (change - self._mean) ** 2 / (degrees * scale)
+        return norm - 0.5 * log(degrees * pi * scale) - 0.5 * (degrees + 1.0) * log1p(off)

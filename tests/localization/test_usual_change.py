@@ -1,0 +1,59 @@
+"""What changes from scan to scan where nobody is carried is learned on the way."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mend.localization.enml.parameters import EnmlParameters
+from mend.localization.enml.usual_change import UsualChange
+
+ITS = EnmlParameters()
+CHANGES = st.lists(st.tuples(st.floats(-1.0, 2.0), st.floats(0.0, 1.0)), max_size=60)
+
+
+def after(*changes: float) -> UsualChange:
+    usual = UsualChange(ITS)
+    for each in changes:
+        usual.learn(each, 1.0)
+    return usual
+
+
+@given(CHANGES)
+def test_it_stays_a_density_whatever_is_learned(changes: list[tuple[float, float]]) -> None:
+    usual = UsualChange(ITS)
+    for each in changes:
+        usual.learn(*each)
+    grid = np.linspace(-60.0, 60.0, 24_001)
+    density = [math.exp(usual.log_density(float(each))) for each in grid]
+    assert np.trapezoid(density, grid) == pytest.approx(1.0, abs=0.1)
+
+
+def test_at_first_it_is_what_the_parameters_say() -> None:
+    usual = UsualChange(ITS)
+    middle = usual.log_density(-ITS.recognized_share)
+    assert middle > usual.log_density(-ITS.recognized_share + ITS.recognized_spread)
+    assert usual.log_density(0.5) < middle - 5.0
+
+
+def test_where_much_changes_all_the_time_that_is_no_surprise() -> None:
+    generator = np.random.default_rng(1)
+    crowd = after(*generator.normal(-0.2, 0.2, 60))
+    walls = after(*generator.normal(-0.7, 0.1, 60))
+    assert crowd.log_density(0.1) > walls.log_density(0.1) + 4.0
+
+
+def test_what_was_usual_long_ago_is_forgotten() -> None:
+    long = int(5 * ITS.usual_scans)
+    assert after(*[0.2] * 30, *[-0.7] * long).log_density(0.2) < -3.0
+
+
+def test_what_weighs_nothing_teaches_nothing() -> None:
+    usual, same = after(-0.5, -0.7), after(-0.5, -0.7)
+    before = usual.log_density(0.0)
+    for _ in range(3):
+        usual.learn(2.0, 0.0)
+    assert usual.log_density(0.0) == pytest.approx(before, abs=1.0)
+    assert same.log_density(0.0) == before
