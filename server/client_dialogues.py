@@ -4,7 +4,7 @@ from typing import Literal
 from uuid import UUID
 
 from mend.server.client_wire import Wire
-from mend.server.dialogues.who_helps import HelperView
+from mend.server.dialogues.who_helps import HelpersView
 from mend.server.journal.events import (
     Answered,
     DeadlineExtended,
@@ -26,9 +26,9 @@ class DialogueCalls(Wire):
     ) -> list[DialogueView]:
         return await self._get("/api/dialogues", list[DialogueView], status=status)
 
-    async def helpers(self) -> list[HelperView]:
+    async def helpers(self) -> HelpersView:
         """Who may be asked now, and who of them is here, away or busy."""
-        return await self._get("/api/helpers", list[HelperView])
+        return await self._get("/api/helpers", HelpersView)
 
     async def questions(self) -> list[QuestionBatchView]:
         """The open questions, the most urgent first; those that may be answered alike together."""

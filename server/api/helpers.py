@@ -4,12 +4,12 @@ from fastapi import APIRouter
 
 from mend.server.api.problems import documented
 from mend.server.api.services import WithServices
-from mend.server.dialogues.who_helps import HelperView
+from mend.server.dialogues.who_helps import HelpersView
 
 router = APIRouter(prefix="/api/helpers", tags=["dialogues"])
 
 
 @router.get("", operation_id="list_helpers", responses=documented(401, 421))
-async def list_helpers(services: WithServices) -> list[HelperView]:
+async def list_helpers(services: WithServices) -> HelpersView:
     """Who may be asked, and who of them is here, away, called by push alone, or busy."""
     return services.runs.helpers()

@@ -26,13 +26,23 @@ class HelperView(BaseModel):
     asked: int
 
 
-def who_helps(policy: EscalationPolicy, duty: Duty) -> list[HelperView]:
+class HelpersView(BaseModel):
+    """Everybody who helps. `in_turn`: one is asked after the other; else everybody at once."""
+
+    model_config = ConfigDict(frozen=True)
+
+    in_turn: bool
+    helpers: list[HelperView]
+
+
+def who_helps(policy: EscalationPolicy, duty: Duty) -> HelpersView:
     """The policy's helpers in their order, then who else is signed in.
 
     Where the policy names nobody everybody is asked, so whoever is called is there as well.
     """
     others = [*duty.there, *(() if policy.helpers else sorted(duty.called))]
-    return [_view(each, duty) for each in dict.fromkeys([*policy.helpers, *others])]
+    names = dict.fromkeys([*policy.helpers, *others])
+    return HelpersView(in_turn=bool(policy.helpers), helpers=[_view(each, duty) for each in names])
 
 
 def _view(helper: str, duty: Duty) -> HelperView:

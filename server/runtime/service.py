@@ -5,7 +5,7 @@ from typing import Literal, Protocol
 from uuid import UUID
 
 from mend.server.camera_picture import CameraPicture
-from mend.server.dialogues.who_helps import HelperView
+from mend.server.dialogues.who_helps import HelpersView
 from mend.server.journal.events import (
     Answered,
     Author,
@@ -129,7 +129,7 @@ class RunService(Protocol):
         """What robots ask in these runs."""
         ...
 
-    def helpers(self) -> list[HelperView]:
+    def helpers(self) -> HelpersView:
         """Who may be asked at this moment, and who of them is here, away or busy."""
         ...
 

@@ -9,7 +9,7 @@ from uuid import UUID, uuid4
 from mend.dialogue.script import CloseReason, Help
 from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.server.camera_picture import CameraPicture
-from mend.server.dialogues.who_helps import HelperView
+from mend.server.dialogues.who_helps import HelpersView
 from mend.server.documents import CheckedDocument, DocumentMistake, Uploaded, WrongDocumentError
 from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
@@ -144,8 +144,8 @@ class FakeRuns:
             listed = listed[[run.id for run in listed].index(page.before) + 1 :]
         return listed[page.offset : page.offset + page.limit]
 
-    def helpers(self) -> list[HelperView]:
-        return []
+    def helpers(self) -> HelpersView:
+        return HelpersView(in_turn=False, helpers=[])
 
     async def count_runs(self) -> Mapping[RunStatus, int]:
         return Counter(run.status for run in self._runs.values())

@@ -40,7 +40,7 @@ async def test_a_page_that_is_hidden_or_left_counts_as_away(
     await anna.clock.fast_forward(LONG_MS)
     await expect(who_helps(anna).get_by_text("You count as away")).to_be_visible()
     await expect(anna.get_by_role("link", name="anna (away)")).to_be_visible()
-    await until(lambda: {each.reach for each in service.runtime.helpers()} == {"away"})
+    await until(lambda: {each.reach for each in service.runtime.helpers().helpers} == {"away"})
     await anna.mouse.move(100, 100)
     await expect(who_helps(anna).get_by_text("You count as here")).to_be_visible()
 

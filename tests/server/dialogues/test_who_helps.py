@@ -12,7 +12,8 @@ def test_who_is_here_away_called_or_not_to_be_reached_and_busy() -> None:
     on = [(UUID(int=7), "ben"), (UUID(int=7), "ben")]
     asked = [WaitingQuestion(UUID(int=1), ["ana", "dan"]), WaitingQuestion(UUID(int=2), ["dan"])]
     duty = Duty(["dan", "ben", "cem"], on, asked, away=["cem"], called=["ana", "flo"])
-    assert who_helps(policy, duty) == [
+    assert who_helps(policy, duty).in_turn
+    assert who_helps(policy, duty).helpers == [
         HelperView(helper="ana", reach="called", on=0, asked=0),
         HelperView(helper="ben", reach="here", on=1, asked=0),
         HelperView(helper="cem", reach="away", on=0, asked=0),
@@ -23,4 +24,6 @@ def test_who_is_here_away_called_or_not_to_be_reached_and_busy() -> None:
 
 def test_where_everybody_is_asked_whoever_is_called_helps() -> None:
     duty = Duty(["dan"], called=["flo", "dan"])
-    assert [each.helper for each in who_helps(EscalationPolicy(), duty)] == ["dan", "flo"]
+    found = who_helps(EscalationPolicy(), duty)
+    assert not found.in_turn
+    assert [each.helper for each in found.helpers] == ["dan", "flo"]

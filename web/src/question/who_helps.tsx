@@ -6,7 +6,7 @@ import { helperName } from "../state/preferences";
 import { connection, onEvent, onSnapshot } from "../state/service";
 import { t } from "../words/words";
 import * as rest from "../wire/rest";
-import type { Event, HelperView } from "../wire/types";
+import type { Event, HelpersView, HelperView } from "../wire/types";
 import "./who_helps.css";
 
 /** Whoever leaves a page is no event: it is looked for now and then. */
@@ -24,7 +24,7 @@ const CHANGES_WORK: ReadonlySet<Event["type"]> = new Set([
 ]);
 
 export function WhoHelps() {
-  const helpers = useHelpers();
+  const { in_turn, helpers } = useHelpers();
   if (connection.value !== "connected") return null;
   const others = helpers.filter((each) => each.helper !== helperName.value);
   const me = helpers.find((each) => each.helper === helperName.value);
@@ -32,7 +32,7 @@ export function WhoHelps() {
   return (
     <section class="who-helps" aria-labelledby="who-helps">
       <h2 id="who-helps">{t("Who helps")}</h2>
-      {may("helper") && <p class="small">{aboutMe(others.length > 0)}</p>}
+      {may("helper") && <p class="small">{aboutMe(in_turn && others.length > 0)}</p>}
       {others.length > 0 && (
         <ul>
           {[...(me === undefined ? [] : [me]), ...others].map((each) => (
@@ -45,14 +45,14 @@ export function WhoHelps() {
 }
 
 /** This page knows sooner than the service. */
-function aboutMe(others: boolean): string {
+function aboutMe(inTurn: boolean): string {
   if (presence.value === "away") {
-    return others
+    return inTurn
       ? t("You count as away, as nobody has touched this page for a while: whoever is here is asked before you. Touch it or press a key to be here.")
       : t("You count as away, as nobody has touched this page for a while. You are called all the same.");
   }
   if (presence.value === "beside") return t("This page stands beside a robot: it always counts as here.");
-  return t("You count as here: who is here and has nothing to do is asked first.");
+  return inTurn ? t("You count as here: who is here and has nothing to do is asked first.") : t("You count as here. Everybody is asked at once.");
 }
 
 function Helper({ helper: each }: { helper: HelperView }) {
@@ -81,8 +81,8 @@ function standing(reach: HelperView["reach"], { on, asked }: HelperView): string
   }
 }
 
-function useHelpers(): readonly HelperView[] {
-  const [helpers, setHelpers] = useState<readonly HelperView[]>([]);
+function useHelpers(): HelpersView {
+  const [helpers, setHelpers] = useState<HelpersView>({ in_turn: false, helpers: [] });
   useEffect(() => {
     let current = true;
     const read = () => void rest.helpers().then((found) => current && setHelpers(found), () => undefined);
