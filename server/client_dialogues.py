@@ -4,6 +4,7 @@ from typing import Literal
 from uuid import UUID
 
 from mend.server.client_wire import Wire
+from mend.server.dialogues.who_helps import HelpersView
 from mend.server.journal.events import (
     Answered,
     DeadlineExtended,
@@ -24,6 +25,10 @@ class DialogueCalls(Wire):
         self, status: Literal["open", "closed"] | None = None
     ) -> list[DialogueView]:
         return await self._get("/api/dialogues", list[DialogueView], status=status)
+
+    async def helpers(self) -> HelpersView:
+        """Who may be asked now, and who of them is here, away or busy."""
+        return await self._get("/api/helpers", HelpersView)
 
     async def questions(self) -> list[QuestionBatchView]:
         """The open questions, the most urgent first; those that may be answered alike together."""

@@ -170,7 +170,7 @@ async def _open(
     )
     public_url = settings.public_url or (None if is_everywhere(settings.host) else url)
     mail = _operator_mail(settings, public_url)
-    attendance = Attendance()
+    attendance = Attendance(time.monotonic, settings.away_after_s)
     runtime = Runtime(
         journal=journal,
         robots=registry,
@@ -207,6 +207,7 @@ async def _open(
         settings.push_key_path if recover else None,
         utc_now=lambda: datetime.now(UTC),
     )
+    attendance.called_by_push = push.helpers
     speech = _speech(settings)
     app = create_app(
         runtime,

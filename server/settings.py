@@ -17,6 +17,7 @@ from pydantic_settings import (
 
 from mend.documents.plain_mistakes import what_it_must_be
 from mend.errors import WrongInputError
+from mend.server.dialogues.attendance import AWAY_AFTER_S
 from mend.server.dialogues.mail import Address, MailSettings
 from mend.server.journal.sqlite import IN_MEMORY
 from mend.server.limits import Limits
@@ -112,6 +113,8 @@ class Settings(BaseSettings):
     max_times_gone: Annotated[int, Field(ge=0, le=1000)] = 10
     """How often a leaf is done again whose result was taken away, before it is given up."""
     claim_lease_s: Seconds = 30.0
+    away_after_s: Annotated[float, Field(ge=30, le=86_400, allow_inf_nan=False)] = AWAY_AFTER_S
+    """How long after somebody has last done something at their page they count as away."""
     heartbeat_s: Seconds = 1.0
     robot_hang_timeout_s: Seconds = 10.0
     robot_absence_s: Seconds = 3.0

@@ -98,6 +98,7 @@ ENDPOINTS: tuple[Endpoint, ...] = (
     Endpoint("list_dialogues", "GET", "/api/dialogues", Role.VIEWER),
     Endpoint("get_dialogue", "GET", _DIALOGUE, Role.VIEWER),
     Endpoint("list_questions", "GET", "/api/questions", Role.VIEWER),
+    Endpoint("list_helpers", "GET", "/api/helpers", Role.VIEWER),
     Endpoint("choose_for_all", "POST", "/api/questions/choices", Role.HELPER),
     Endpoint("answer_prompt", "POST", _DIALOGUE + "/answers", Role.HELPER),
     Endpoint("choose_way", "POST", _DIALOGUE + "/choices", Role.HELPER),
@@ -156,6 +157,7 @@ MESSAGES: Mapping[str, Mapping[str, Role | None]] = {
         "extend": Role.HELPER,
         "done": Role.HELPER,
         "take_back": Role.HELPER,
+        "here": Role.VIEWER,
     },
     "/ws/live": {"auth": OPEN},
     "/ws/speech": {

@@ -5,6 +5,7 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
+from mend.server.dialogues.attendance import Presence
 from mend.server.runtime.views import DialogueView, RunSummary
 
 CommandId = Annotated[str, Field(max_length=128)] | Annotated[int, Field(ge=0, le=2**53 - 1)]
@@ -83,13 +84,24 @@ class TakeBack(HelperMessage):
     dialogue: UUID
 
 
+class Here(HelperMessage):
+    """Say who is at this page. `active`: somebody has just done something there; again and again.
+
+    `away`: nobody sees it. `beside`: whoever is beside a robot, whom it always hears. The result
+    has `away_after_s`: whoever was last active longer ago counts as away.
+    """
+
+    type: Literal["here"]
+    presence: Presence
+
+
 class Ping(HelperMessage):
     """Is anybody there?"""
 
     type: Literal["ping"]
 
 
-AnyClientMessage = Auth | Answer | Choose | Claim | Release | Extend | Done | TakeBack | Ping
+AnyClientMessage = Auth | Answer | Choose | Claim | Release | Extend | Done | TakeBack | Here | Ping
 
 ClientMessage = Annotated[AnyClientMessage, Field(discriminator="type")]
 

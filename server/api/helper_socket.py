@@ -24,6 +24,7 @@ from mend.server.api.helper_messages import (
     Claim,
     Done,
     Extend,
+    Here,
     Ping,
     Release,
     Result,
@@ -35,6 +36,7 @@ from mend.server.api.helper_messages import (
 from mend.server.api.problem import problem
 from mend.server.api.problems import count_refusal, problem_of
 from mend.server.api.services import MAX_SEQ
+from mend.server.dialogues.attendance import Device, Presence
 from mend.server.journal.events import NO_RUN
 from mend.server.journal.journal import JournalClosedError
 from mend.server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
@@ -49,10 +51,14 @@ MAX_MESSAGE_CHARS = 64 * 1024
 
 
 class EventsQuery(HelperQuery):
-    """The address's parameters: who it is, the last event seen, and whether events have `lines`."""
+    """The address's parameters: who it is, the last event seen, and whether events have `lines`.
+
+    `presence`: who is at the page from the start, as a `here` message says it later.
+    """
 
     after: Annotated[int, Field(ge=0, le=MAX_SEQ)] | None = None
     told: bool = False
+    presence: Presence | None = None
 
 
 @router.websocket(HELPER_PATH)
@@ -70,17 +76,19 @@ class HelperSocket(HelperConnection[EventsQuery]):
     async def _serve(self, query: EventsQuery, helper: str) -> None:
         """Send a snapshot, then events while taking messages, until one of the two ends."""
         seq = await self._send_snapshot(query.after)
-        with self._attending(helper):
+        with self._attending(helper, query.presence) as self._device:
             await until_one_ends(
                 self._send_events(seq, told=query.told),
                 self._send_trouble(),
                 self._receive_messages(helper),
             )
 
-    def _attending(self, helper: str) -> AbstractContextManager[None]:
+    def _attending(
+        self, helper: str, presence: Presence | None
+    ) -> AbstractContextManager[Device | None]:
         """Whoever may answer is there to be asked, for as long as this connection lasts."""
         may_answer = self._caller.principal.role.may(Role.HELPER)
-        return self._parts.attendance.attending(helper) if may_answer else nullcontext()
+        return self._parts.attendance.attending(helper, presence) if may_answer else nullcontext()
 
     # --- to the helper ------------------------------------------------------------------------
 
@@ -186,6 +194,10 @@ class HelperSocket(HelperConnection[EventsQuery]):
                 done = await runs.dialogues.said_done(message.dialogue, helper, self._author)
             case TakeBack():
                 done = await runs.dialogues.take_back(message.dialogue, helper, self._author)
+            case Here():
+                if self._device is not None:
+                    self._parts.attendance.says(helper, self._device, message.presence)
+                return {"away_after_s": self._parts.attendance.away_after_s}
             case Auth() | Ping():
                 return {}
         return done.model_dump(mode="json")

@@ -1,9 +1,10 @@
-"""Who is signed in to help, and what each helper has to do: of one moment."""
+"""Who is signed in to help and who is here, and what each helper has to do: of one moment."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
 from uuid import UUID
 
+from mend.server.dialogues.attendance import Attendance
 from mend.server.runtime.dialogue_state import DialogueState
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.views import RunStatus
@@ -32,12 +33,15 @@ class Duty:
     """`there` are those who are signed in and may answer, who came first first.
 
     `on` are the dialogues that somebody has claimed or promised help in, and `questions` the
-    others, in the order in which they were put.
+    others, in the order in which they were put. `away` are those who are there and at no page of
+    theirs, and `called` those who have a device that is called, signed in or not.
     """
 
     there: Sequence[str] = ()
     on: Sequence[tuple[UUID, str]] = ()
     questions: Sequence[WaitingQuestion] = ()
+    away: Collection[str] = ()
+    called: Collection[str] = ()
 
     @property
     def free(self) -> list[str]:
@@ -47,9 +51,20 @@ class Duty:
 
     @property
     def idle(self) -> list[str]:
-        """Who is there, on nothing, and asked nothing."""
+        """Who is here, on nothing, and asked nothing."""
         asked = {each.helper for each in self.questions}
-        return [each for each in self.free if each not in asked]
+        return [each for each in self.free if each not in asked and each not in self.away]
+
+    def rank(self, helper: str, dialogue: UUID | None = None) -> tuple[int, int]:
+        """Where a helper stands among all: the least is asked first.
+
+        Who has nothing before it is, and among those alike who is here, then who hears a call.
+        """
+        if helper in self.there and helper not in self.away:
+            far = 0
+        else:
+            far = 1 if helper in self.there or helper in self.called else 2
+        return self.before(helper, dialogue), far
 
     def before(self, helper: str, dialogue: UUID | None = None) -> int:
         """How many other things a helper is to do first; without a dialogue, before a new one."""
@@ -63,10 +78,11 @@ class Duty:
     def without(self, dialogue: UUID) -> "Duty":
         """The same but for what is of one dialogue, which puts its next question."""
         on = [each for each in self.on if each[0] != dialogue]
-        return Duty(self.there, on, [each for each in self.questions if each.dialogue != dialogue])
+        questions = [each for each in self.questions if each.dialogue != dialogue]
+        return replace(self, on=on, questions=questions)
 
 
-def duty_of(there: Sequence[str], runs: Iterable[RunState]) -> Duty:
+def duty_of(attendance: Attendance, runs: Iterable[RunState]) -> Duty:
     """The duty of those who are there, in what these runs ask of people."""
     open_dialogues = [
         (run, each) for run in runs for each in run.open_dialogues if not each.opened.scripted
@@ -79,7 +95,13 @@ def duty_of(there: Sequence[str], runs: Iterable[RunState]) -> Duty:
         if (ask := each.open_ask) is not None and each.id not in taken
     ]
     waiting.sort(key=lambda each: each[0])
-    return Duty(tuple(there), on, [question for _, question in waiting])
+    return Duty(
+        there=tuple(attendance.there),
+        on=on,
+        questions=[question for _, question in waiting],
+        away=tuple(attendance.away),
+        called=frozenset(attendance.called_by_push()),
+    )
 
 
 def _helpers_on(dialogue: DialogueState) -> list[str]:

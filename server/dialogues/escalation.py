@@ -2,7 +2,7 @@
 
 Every rung but the last is one prompt, so an ask's prompts say where it stands. Before the operators
 are written to, and before it is given up, whoever is signed in and on nothing else is called once.
-No ask waits for a helper who is busy with another one while somebody is idle.
+No ask waits for a helper who is busy with another one, or away, while somebody is here and idle.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,8 @@ class EscalationPolicy(BaseModel):
 
     It is first put to the first of `helpers` (to everybody where none is named) and asked again
     `repeats` times, then goes to each other helper in turn, then to those who are signed in and
-    were not asked last, then is mailed to `operators`. Whoever is idle is asked before who is busy.
+    were not asked last, then is mailed to `operators`. Whoever is idle is asked before who is busy,
+    and of those who are idle who is here before who is away.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -67,6 +68,9 @@ class Exhausted:
 NOBODY = Duty()
 """Nobody is there, and nothing is to be done."""
 
+FIRST = (0, 0)
+"""The rank of who is here and has nothing to do before."""
+
 Rung = Repeat | ToHelper | Mail | Exhausted
 
 
@@ -84,20 +88,15 @@ def first_helper(
     """Whom an ask is put to first; None is everybody.
 
     Who is `answering` its robot is asked what follows from that, as long as they are there. Else it
-    is the first of the policy's helpers unless they have something to do before it: then somebody
-    who is idle, or else who has the least to do. Where the robot does not wait, nobody else can be
-    asked later, and so somebody is asked who is there.
+    is who ranks first of the policy's helpers and of those who are here and idle. Where the robot
+    does not wait, nobody else can be asked later, and so somebody is asked who is there.
     """
     if not policy.helpers:
         return None
     if answering in duty.there and not duty.before(answering):
         return answering
-    if waits and not duty.before(policy.helpers[0]):
-        return policy.helpers[0]
-    if idle := _in_order(policy, duty.idle):
-        return idle[0]
     there = [] if waits else _in_order(policy, duty.free)
-    return _least_busy(there or policy.helpers, duty)
+    return min(there or _askable(policy, duty.idle), key=duty.rank)
 
 
 def next_rung(
@@ -108,38 +107,41 @@ def next_rung(
 ) -> Rung:
     """What follows when the last of an ask's prompts was not answered; `dialogue` is what it is of.
 
-    Nobody is asked again or next who has something to do before it while somebody else is idle.
-    Raises `ValueError` without a prompt: an ask that was never put cannot be escalated.
+    Nobody is asked again or next who is away or has something to do before it while somebody else
+    is here and idle. Raises `ValueError` without a prompt: an ask that was never put cannot be
+    escalated.
     """
     asked, within_s = standing.asked, policy.answer_within_s
     if not asked:
         raise ValueError("an ask has 1 or more prompts when it is escalated, not 0")
     again, idle = asked[-1], [each for each in _in_order(policy, duty.idle) if each not in asked]
     if len(asked) <= policy.repeats:
-        if policy.helpers and again is not None and duty.before(again, dialogue) and idle:
+        if policy.helpers and again is not None and duty.rank(again, dialogue) > FIRST and idle:
             return ToHelper(idle[0], within_s)
         return Repeat(again, within_s)
-    if unasked := [each for each in policy.helpers if each not in asked]:
-        there = [each for each in unasked if each in duty.idle]
-        return ToHelper(_least_busy(there or unasked, duty), within_s)
+    if any(each not in asked for each in policy.helpers):
+        unasked = [each for each in _askable(policy, idle) if each not in asked]
+        return ToHelper(min(unasked, key=duty.rank), within_s)
     asked_last = _last_round(policy, standing)
     if policy.helpers and (left := [each for each in duty.free if each not in asked_last]):
-        there = [each for each in left if each in duty.idle]
-        return ToHelper(_least_busy(there or left, duty), within_s)
+        return ToHelper(min(left, key=duty.rank), within_s)
     if policy.operators and not standing.mailed:
         return Mail(policy.operators, policy.mail_answer_within_s)
     return Exhausted()
 
 
 def handed_on(policy: EscalationPolicy, duty: Duty) -> dict[UUID, str]:
-    """Which questions go on at once to whom, so that none waits for somebody who is busy.
+    """Which questions go on at once to whom, so that none waits for somebody who is busy or away.
 
-    The one that was put first goes to the first who is idle and was not asked it before, and so on.
+    The one that was put first goes to the first who is here, idle and was not asked it before, and
+    so on. None goes on to who is away: who is here may be done sooner than they come.
     """
     idle, found = _in_order(policy, duty.idle), dict[UUID, str]()
     for question in duty.questions if policy.helpers else ():
         helper = question.helper
-        if helper is None or not question.may_go_on or not duty.before(helper, question.dialogue):
+        if helper is None or not question.may_go_on:
+            continue
+        if duty.rank(helper, question.dialogue) == FIRST:
             continue
         to = next((each for each in idle if each not in question.asked), None)
         if to is not None:
@@ -154,8 +156,9 @@ def _in_order(policy: EscalationPolicy, helpers: Sequence[str]) -> list[str]:
     return [*known, *(each for each in helpers if each not in known)]
 
 
-def _least_busy(helpers: Sequence[str], duty: Duty) -> str:
-    return min(helpers, key=duty.before)
+def _askable(policy: EscalationPolicy, idle: Sequence[str]) -> list[str]:
+    """The policy's helpers, then who else is idle."""
+    return [*policy.helpers, *(each for each in idle if each not in policy.helpers)]
 
 
 def _last_round(policy: EscalationPolicy, standing: Standing) -> Sequence[str | None]:

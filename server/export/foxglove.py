@@ -1,15 +1,28 @@
 """The messages that Foxglove shows, as far as they are used here, with their JSON Schemas.
 
-Fields and names are those of https://docs.foxglove.dev/docs/sdk/schemas.
+Fields and names are those of https://docs.foxglove.dev/docs/sdk/schemas. `SCHEMAS` has its schemas
+as of version 2.1.0 (of Foxglove, under the MIT license) but for their descriptions. Its readers
+follow no references in a schema, so that none may be made of the models here.
 """
 
-from typing import Annotated, Self
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, ConfigDict, Field
 
 NS = 1_000_000_000
 
-Base64 = Annotated[str, Field(json_schema_extra={"contentEncoding": "base64"})]
+SCHEMAS: Mapping[str, Mapping[str, Any]] = json.loads(
+    Path(__file__).with_name("foxglove_schemas.json").read_text("utf-8")
+)
+"""Of every message that is not part of another one, by name."""
+
+TIME: Mapping[str, Any] = SCHEMAS["foxglove.Log"]["properties"]["timestamp"]
+"""The schema by which a field is known as a time."""
+
+NoneOfThem = Annotated[list[Any], Field(max_length=0)]
 
 
 class FoxgloveModel(BaseModel):
@@ -75,14 +88,25 @@ class CubePrimitive(FoxgloveModel):
 
 
 class SceneEntity(FoxgloveModel):
-    """Something that stays where its frame is until it is deleted."""
+    """Something that stays where its frame is until it is deleted; all of it are boxes.
+
+    A `lifetime` of 0 has no end. Readers count on every kind of shape.
+    """
 
     timestamp: Time
     frame_id: str
     id: str
     lifetime: Time = Time(sec=0, nsec=0)
     frame_locked: bool = True
+    metadata: NoneOfThem = []
+    arrows: NoneOfThem = []
     cubes: list[CubePrimitive]
+    spheres: NoneOfThem = []
+    cylinders: NoneOfThem = []
+    lines: NoneOfThem = []
+    triangles: NoneOfThem = []
+    texts: NoneOfThem = []
+    models: NoneOfThem = []
 
 
 class SceneEntityDeletion(FoxgloveModel):
@@ -99,9 +123,11 @@ class SceneUpdate(FoxgloveModel):
 
 
 class CompressedImage(FoxgloveModel):
+    """A picture; its `data` are in base64."""
+
     timestamp: Time
     frame_id: str
-    data: Base64
+    data: str
     format: str
 
 

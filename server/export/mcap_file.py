@@ -7,14 +7,18 @@ clock and what its own clock has counted since.
 import base64
 import io
 import json
+import math
 from collections.abc import Mapping, Sequence
 from datetime import datetime
+from typing import Any
 
 from mcap.writer import CompressionType, Writer
 from pydantic import BaseModel, ConfigDict
 
 from mend.server.export.foxglove import (
     NS,
+    SCHEMAS,
+    TIME,
     CompressedImage,
     FoxgloveModel,
     Log,
@@ -59,6 +63,19 @@ class Gripper(FoxgloveModel):
     opening_m: float
 
 
+GRIPPER = "mend.Gripper"
+OWN_SCHEMAS: Mapping[str, Mapping[str, Any]] = {
+    "mend.Event": JournaledEvent.model_json_schema() | {"title": "mend.Event"},
+    GRIPPER: {
+        "title": GRIPPER,
+        "type": "object",
+        "properties": {"timestamp": TIME, "opening_m": {"type": "number"}},
+        "required": ["timestamp", "opening_m"],
+    },
+}
+"""Of messages that Foxglove does not know: none refers to another one, as it follows none."""
+
+
 class McapFile:
     """An MCAP file; without a `layout` it has no poses.
 
@@ -75,12 +92,13 @@ class McapFile:
         # It writes its numbers with `tell` alone, and so never goes back.
         self._writer = Writer(self._stream, CHUNK_BYTES, CompressionType.ZSTD)
         self._writer.start(profile="", library="mend")
+        self._shown_s = -math.inf
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
 
     def add_event(self, event: ev.Event, text: str, lines: Sequence[Line]) -> None:
         at_ns = self._ns(event.time)
-        self._add("/events", "mend.Event", JournaledEvent, at_ns, text.encode(), event.seq)
+        self._add("/events", "mend.Event", at_ns, text.encode(), event.seq)
         for line in lines:
             name, message = line.speaker, line.opening + line.text
             level = LEVELS.get(line.tone, _INFO)
@@ -102,9 +120,11 @@ class McapFile:
             return
         shown = decode(frame)
         layout = self._layout
-        if not _fits(layout, shown):
-            # Recorded before the robot showed what its last layout tells.
+        # Recorded before the robot showed what its last layout tells, or once more by a service
+        # that was started again and took the run up where its last event was.
+        if not _fits(layout, shown) or shown.time_s < self._shown_s:
             return
+        self._shown_s = shown.time_s
         at_ns = self._ns(shown.time_s)
         time = Time.of(at_ns)
         self._tell("/tf", transforms_of(layout, shown, time), at_ns)
@@ -136,16 +156,13 @@ class McapFile:
         return max(0, self._zero_ns + round(time_s * NS))
 
     def _tell(self, topic: str, message: FoxgloveModel, at_ns: int) -> None:
-        kind = type(message)
-        name = f"mend.{kind.__name__}" if kind is Gripper else f"foxglove.{kind.__name__}"
-        self._add(topic, name, kind, at_ns, message.model_dump_json().encode(), 0)
+        name = GRIPPER if isinstance(message, Gripper) else f"foxglove.{type(message).__name__}"
+        self._add(topic, name, at_ns, message.model_dump_json().encode(), 0)
 
-    def _add(
-        self, topic: str, name: str, kind: type[BaseModel], at_ns: int, data: bytes, seq: int
-    ) -> None:
+    def _add(self, topic: str, name: str, at_ns: int, data: bytes, seq: int) -> None:
         if topic not in self._channels:
             if name not in self._schemas:
-                schema = schema_of(name, kind)
+                schema = json.dumps(SCHEMAS.get(name) or OWN_SCHEMAS[name]).encode()
                 self._schemas[name] = self._writer.register_schema(name, "jsonschema", schema)
             self._channels[topic] = self._writer.register_channel(
                 topic, "json", self._schemas[name]
@@ -167,11 +184,6 @@ def _fits(layout: Layout, frame: DecodedFrame) -> bool:
             for arm in frame.arms
         )
     )
-
-
-def schema_of(name: str, kind: type[BaseModel]) -> bytes:
-    """The JSON Schema of messages of a kind."""
-    return json.dumps({**kind.model_json_schema(), "title": name}).encode()
 
 
 class _Stream(io.BytesIO):

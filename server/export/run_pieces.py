@@ -8,7 +8,8 @@ from uuid import UUID
 
 from mend.server.export.csv_file import CsvFile
 from mend.server.export.mcap_file import McapFile
-from mend.server.export.run_file import Format, RunFile, pictures_of
+from mend.server.export.run_file import Format, RunFile, ShownPicture
+from mend.server.export.run_order import ToldEvent, in_order
 from mend.server.journal import events as ev
 from mend.server.journal.subscriptions import Record
 from mend.server.poses.layout import Layout
@@ -55,14 +56,17 @@ async def _growing(source: RunSource, form: Format) -> AsyncIterator[RunFile]:
     file: RunFile | None = None
     transcript = Transcript()
     turns = Turns()
-    async for record in source.records:
-        event = await source.event(record)
-        file = file or _begun(form, event, source.layout)
-        async for _ in _add_frames(file, source, event.time):
+    async for each in _told(source, form):
+        if isinstance(each, ToldEvent):
+            file = file or _begun(form, each.event, source.layout)
+        if file is None:
+            continue
+        async for _ in _add_frames(file, source, each.time_s):
             yield file
-        if file.shows:
-            await _add_pictures(file, source, event)
-        file.add_event(event, record.text, transcript.lines(event))
+        if isinstance(each, ToldEvent):
+            file.add_event(each.event, each.text, transcript.lines(each.event))
+        elif (jpeg := await source.picture(each.picture)) is not None:
+            file.add_picture(each, jpeg)
         yield file
         await turns.pass_on()
     if file is not None:
@@ -70,11 +74,14 @@ async def _growing(source: RunSource, form: Format) -> AsyncIterator[RunFile]:
             yield file
 
 
-async def _add_pictures(file: RunFile, source: RunSource, event: ev.Event) -> None:
-    for shown in pictures_of(event):
-        jpeg = await source.picture(shown.picture)
-        if jpeg is not None:
-            file.add_picture(shown, jpeg)
+async def _told(source: RunSource, form: Format) -> AsyncIterator[ToldEvent | ShownPicture]:
+    """What the file is made of, but for the poses; only one that shows pictures waits for them."""
+    if form is not Format.CSV:
+        async for each in in_order(source.records, source.event):
+            yield each
+        return
+    async for record in source.records:
+        yield ToldEvent(await source.event(record), record.text)
 
 
 async def _add_frames(file: RunFile, source: RunSource, until_s: float) -> AsyncIterator[None]:

@@ -1,7 +1,7 @@
 """A recorded moment as Foxglove's transforms, joints and boxes."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from mend.server.export.foxglove import (
     Color,
@@ -27,6 +27,9 @@ SCENE = "scene"
 _DIGITS = 6
 """Poses are recorded with single precision: a micrometre is all that there is to tell."""
 
+Placed = tuple[str, str, PoseOfFrame]
+"""A parent frame, a child frame, and where that is in it."""
+
 _UNTURNED = Quaternion(x=0.0, y=0.0, z=0.0, w=1.0)
 
 
@@ -35,20 +38,34 @@ def base_of(robot: str) -> str:
     return f"{robot}/base"
 
 
+def frame_of(thing: str) -> str:
+    """The name of an object's frame: its own, unless that is the name of where all stands."""
+    return thing if thing != SCENE else f"{SCENE}/{SCENE}"
+
+
 def transforms_of(layout: Layout, frame: DecodedFrame, time: Time) -> FrameTransforms:
     """Where the bases, the tools and the objects are."""
     base = base_of(layout.robot)
     placed = list(_bases(layout, frame))
     placed.append((base, f"{layout.robot}/tool", frame.tool))
     placed += [
-        (base, each.name, shown.pose)
+        (base, frame_of(each.name), shown.pose)
         for each, shown in zip(layout.objects, frame.objects, strict=True)
     ]
     placed += _arms(layout, frame)
-    return FrameTransforms(transforms=[_transform(*each, time) for each in placed])
+    return FrameTransforms(transforms=[_transform(*each, time) for each in _rooted(placed)])
 
 
-def _arms(layout: Layout, frame: DecodedFrame) -> Iterator[tuple[str, str, PoseOfFrame]]:
+def _rooted(placed: Iterable[Placed]) -> Iterator[Placed]:
+    """Those whose place in the scene is known: what hangs at a robot that is nowhere is nowhere."""
+    known = {SCENE}
+    for parent, child, pose in placed:
+        if parent in known:
+            known.add(child)
+            yield parent, child, pose
+
+
+def _arms(layout: Layout, frame: DecodedFrame) -> Iterator[Placed]:
     for arm in frame.arms:
         robot = layout.arms[arm.number].robot
         if robot not in layout.robots:
@@ -56,7 +73,7 @@ def _arms(layout: Layout, frame: DecodedFrame) -> Iterator[tuple[str, str, PoseO
         yield base_of(robot), f"{robot}/tool", arm.tool
 
 
-def _bases(layout: Layout, frame: DecodedFrame) -> Iterator[tuple[str, str, PoseOfFrame]]:
+def _bases(layout: Layout, frame: DecodedFrame) -> Iterator[Placed]:
     if layout.robot not in layout.robots:
         yield SCENE, base_of(layout.robot), frame.base
     for robot, shown in zip(layout.robots, frame.robots, strict=True):
@@ -103,7 +120,8 @@ def _box(shown: ObjectLayout, time: Time) -> SceneEntity:
     cubes = [_cube(shown.size_m, 0.0, shown.color)]
     if shown.knob_m is not None:
         cubes.append(_cube(shown.knob_m, shown.size_m[2], shown.color))
-    return SceneEntity(timestamp=time, frame_id=shown.name, id=shown.name, cubes=cubes)
+    frame = frame_of(shown.name)
+    return SceneEntity(timestamp=time, frame_id=frame, id=shown.name, cubes=cubes)
 
 
 def _table(layout: Layout, time: Time) -> SceneEntity:
@@ -111,7 +129,9 @@ def _table(layout: Layout, time: Time) -> SceneEntity:
     x, y = table.center
     size = (*table.size_m, table.height_m)
     cube = _cube(size, 0.0, (0.6, 0.6, 0.6), (x, y))
-    return SceneEntity(timestamp=time, frame_id=base_of(layout.robot), id="table", cubes=[cube])
+    # A part may be called a table, but for the stroke.
+    base = base_of(layout.robot)
+    return SceneEntity(timestamp=time, frame_id=base, id=f"{layout.robot}/table", cubes=[cube])
 
 
 def _cube(

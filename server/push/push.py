@@ -61,6 +61,11 @@ class Push:
         """Whether questions are ever put to a helper."""
         return not self._helpers or helper in self._helpers
 
+    def helpers(self) -> frozenset[str]:
+        """Those with a device that is called."""
+        devices = self.subscriptions.of_helper(None) if self.available else ()
+        return frozenset(each.helper for each in devices)
+
     async def start(self) -> None:
         """Have the devices again, and call them from now on."""
         await self.subscriptions.recover()

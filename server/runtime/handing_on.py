@@ -1,4 +1,4 @@
-"""Questions that wait for somebody busy go on to who is idle, whichever run they are of."""
+"""Questions that wait for who is busy or away go on to who is idle, whichever run they are of."""
 
 from collections.abc import Callable, Iterable, Sequence
 
@@ -32,7 +32,7 @@ class HandingOn:
 
     def duty(self) -> Duty:
         """Who is there, and what they have to do by now."""
-        return duty_of(self._attendance.there, self._states())
+        return duty_of(self._attendance, self._states())
 
     def follow(self, events: Sequence[ev.Event]) -> None:
         """A run's state has followed these events."""
@@ -40,7 +40,7 @@ class HandingOn:
             self._hand_on()
 
     def _hand_on(self) -> None:
-        """Have every run look again whose question waits for somebody busy beside somebody idle."""
+        """Have every run look again whose question waits, while somebody else is here and idle."""
         if not self._policy.helpers:
             return
         wanted = handed_on(self._policy, self.duty()).keys()

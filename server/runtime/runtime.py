@@ -17,6 +17,7 @@ from mend.server.camera_picture import CameraPicture
 from mend.server.dialogues.answers import answer_source
 from mend.server.dialogues.attendance import Attendance
 from mend.server.dialogues.escalation import EscalationPolicy
+from mend.server.dialogues.who_helps import HelpersView, who_helps
 from mend.server.errors import BusyError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal
@@ -315,6 +316,10 @@ class Runtime:
             else:
                 summaries.append(summary(state, self._time(state), trouble))
         return summaries
+
+    def helpers(self) -> HelpersView:
+        """Who may be asked at this moment, and who of them is here, away or busy."""
+        return who_helps(self._policy, self._handing_on.duty())
 
     async def count_runs(self) -> Mapping[RunStatus, int]:
         """How many runs there are of each status."""

@@ -5,6 +5,7 @@ from typing import Literal, Protocol
 from uuid import UUID
 
 from mend.server.camera_picture import CameraPicture
+from mend.server.dialogues.who_helps import HelpersView
 from mend.server.journal.events import (
     Answered,
     Author,
@@ -126,6 +127,10 @@ class RunService(Protocol):
     @property
     def dialogues(self) -> DialogueService:
         """What robots ask in these runs."""
+        ...
+
+    def helpers(self) -> HelpersView:
+        """Who may be asked at this moment, and who of them is here, away or busy."""
         ...
 
     async def start_run(self, request: RunRequest, author: Author | None = None) -> RunSummary:

@@ -9,6 +9,7 @@ from uuid import UUID, uuid4
 from mend.dialogue.script import CloseReason, Help
 from mend.errors import ConflictError, NotFoundError, WrongInputError
 from mend.server.camera_picture import CameraPicture
+from mend.server.dialogues.who_helps import HelpersView
 from mend.server.documents import CheckedDocument, DocumentMistake, Uploaded, WrongDocumentError
 from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
@@ -142,6 +143,9 @@ class FakeRuns:
             self.run_now(page.before)
             listed = listed[[run.id for run in listed].index(page.before) + 1 :]
         return listed[page.offset : page.offset + page.limit]
+
+    def helpers(self) -> HelpersView:
+        return HelpersView(in_turn=False, helpers=[])
 
     async def count_runs(self) -> Mapping[RunStatus, int]:
         return Counter(run.status for run in self._runs.values())

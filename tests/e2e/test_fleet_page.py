@@ -17,6 +17,7 @@ pytestmark = pytest.mark.asyncio(loop_scope="session")
 LONG_MS = 60_000
 NAMES = ("ROBOT1", "ROBOT2")
 WIDE = ViewportSize(width=1440, height=1600)
+PHONE = ViewportSize(width=390, height=844)
 # Where nothing is about it, no robot glides from place to place: each picture takes its time.
 CALM: dict[str, Any] = {"viewport": WIDE, "reduced_motion": "reduce"}
 PARCEL = Transport(name="parcel", what="the blue parcel", origin="F1/101", destination="F1/106")
@@ -183,6 +184,30 @@ async def test_what_its_robots_ask_is_answered_there(service: Service, open_page
     await expect(page.get_by_role("complementary", name="A robot asks")).to_have_count(0)
     await asked.get_by_role("button", name="YES").click()
     await expect(row(page, "ROBOT1")).to_contain_text("It has parcel aboard.", timeout=LONG_MS)
+
+
+async def test_on_a_phone_nothing_lies_over_what_may_be_answered(
+    service: Service, open_page: OpenPage
+) -> None:
+    site = await open_office_with_fleet(service, 5.0, answers="live")
+    await service.fleets.submit(site, PARCEL, None)
+    page = await open_page("/fleet", viewport=PHONE, reduced_motion="reduce")
+    asked = page.get_by_role("region", name="What its robots ask")
+    await expect(asked).to_contain_text("Please put the blue parcel", timeout=LONG_MS)
+    for button in await asked.locator(".question-answers button").all():
+        await button.click(trial=True)
+
+
+async def test_what_may_be_said_to_one_of_many_robots_is_folded(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service, 5.0, robots=7)
+    page = await open_page("/fleet", **CALM)
+    home = row(page, "ROBOT7").get_by_role("button", name="Send home")
+    await expect(row(page, "ROBOT7")).to_contain_text("has nothing to do", timeout=LONG_MS)
+    await expect(home).to_be_hidden()
+    await row(page, "ROBOT7").get_by_text("Send it, or take it out of service").click()
+    await expect(home).to_be_visible()
 
 
 async def test_without_a_fleet_the_page_says_so(open_page: OpenPage) -> None:

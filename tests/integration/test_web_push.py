@@ -68,6 +68,8 @@ async def test_a_question_calls_who_is_asked_and_an_answer_calls_it_off(
         await subscribe(client, tablet, "ben")
         view = (await client.get("/api/push", params={"helper": "carl"})).json()
         assert (view["available"], view["asked"]) == (True, False)
+        helping = (await client.get("/api/helpers")).json()
+        assert [each["reach"] for each in helping["helpers"]] == ["called", "called"]
         run = await service.runtime.start_run(ASKS)
         question = await the_open_question(service)
         await until(lambda: bool(pushes.pushed))

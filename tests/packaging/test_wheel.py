@@ -63,6 +63,7 @@ def test_every_file_of_the_packages_is_in_the_wheel_and_no_other(wheel: Path) ->
         names = {name for name in archive.namelist() if ".dist-info/" not in name}
     assert names == package_files()
     assert {
+        "mend/server/export/foxglove_schemas.json",
         "mend/tasks/library/eket.yaml",
         "mend/tasks/scenes/eket.yaml",
         "mend/tasks/scenarios/eket_paper.yaml",

@@ -8,6 +8,7 @@ import zipfile
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from languages_of_console import refused_in_every_language
 from small_model import BARE, DAE, DESCRIPTION, OBJ, PNG, STL, packed
 
 from mend.errors import WrongInputError
@@ -48,13 +49,13 @@ def test_pictures_of_meshes_belong_to_them() -> None:
     checked = check_archive(packed({"meshes/shade.dae": shade, "red.png": PNG}), ROOM)
     with zipfile.ZipFile(io.BytesIO(checked.archive)) as archive:
         assert "red.png" in archive.namelist()
-    with pytest.raises(WrongInputError, match=r"needs red\.png, which is not"):
+    with refused_in_every_language(WrongInputError, r"needs red\.png, which is not"):
         check_archive(packed({"meshes/shade.dae": shade}), ROOM)
 
 
 def test_a_description_that_needs_no_files_may_come_alone() -> None:
     assert check_description(BARE.encode()).version
-    with pytest.raises(WrongInputError, match="send both in one archive"):
+    with refused_in_every_language(WrongInputError, "send both in one archive"):
         check_description(DESCRIPTION.encode())
 
 
@@ -100,7 +101,7 @@ MIMIC = (
     ],
 )
 def test_a_description_that_cannot_be_drawn_is_refused(description: bytes, why: str) -> None:
-    with pytest.raises(WrongInputError, match=why):
+    with refused_in_every_language(WrongInputError, why):
         check_archive(packed({"robot.urdf": description}), ROOM)
 
 
@@ -115,13 +116,13 @@ def test_a_description_that_cannot_be_drawn_is_refused(description: bytes, why: 
 )  # fmt: skip
 def test_a_description_names_nothing_outside_its_archive(said: str) -> None:
     mesh = shape(f"<geometry><mesh filename='{said}'/></geometry>")
-    with pytest.raises(WrongInputError, match=r"robot\.urdf names"):
+    with refused_in_every_language(WrongInputError, r"robot\.urdf names"):
         check_archive(packed({"robot.urdf": mesh}), ROOM)
 
 
 @pytest.mark.parametrize("name", ["../evil.stl", "/evil.stl", "a/../../evil", "a\\b", "a\nb"])
 def test_no_file_of_an_archive_leads_out_of_it(name: str) -> None:
-    with pytest.raises(WrongInputError, match="names are relative"):
+    with refused_in_every_language(WrongInputError, "names are relative"):
         check_archive(packed({name: b""}), ROOM)
 
 
@@ -139,7 +140,7 @@ def test_no_file_of_an_archive_leads_out_of_it(name: str) -> None:
     ],
 )
 def test_meshes_are_what_their_names_say(name: str, content: bytes | None, why: str) -> None:
-    with pytest.raises(WrongInputError, match=why):
+    with refused_in_every_language(WrongInputError, why):
         check_archive(packed({name: content}), ROOM)
 
 
@@ -151,7 +152,7 @@ def test_text_as_stl_is_one_too() -> None:
 def test_no_more_is_unpacked_than_there_is_room_for() -> None:
     bomb = packed({"meshes/base.obj": OBJ + b"#" * 10**7})
     assert len(bomb) < 10**5
-    with pytest.raises(WrongInputError, match="may have 1000000 bytes in all") as refused:
+    with refused_in_every_language(WrongInputError, "may have 1000000 bytes in all") as refused:
         check_archive(bomb, ROOM)
     assert refused.value.limit == "model_bytes"
 
@@ -167,7 +168,7 @@ def test_no_more_is_unpacked_than_a_file_is_said_to_have() -> None:
     with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("robot.urdf", BARE + " " * 10**8)
     tracemalloc.start()
-    with pytest.raises(WrongInputError, match="cannot be read"):
+    with refused_in_every_language(WrongInputError, "cannot be read"):
         check_archive(with_size(bomb.getvalue(), 1000), ROOM)
     assert tracemalloc.get_traced_memory()[1] < 10**7
     tracemalloc.stop()
@@ -178,7 +179,7 @@ def test_packings_that_unpack_without_bounds_are_refused(packing: int) -> None:
     sent = io.BytesIO()
     with zipfile.ZipFile(sent, "w", packing) as archive:
         archive.writestr("robot.urdf", BARE)
-    with pytest.raises(WrongInputError, match="deflate it, or store it"):
+    with refused_in_every_language(WrongInputError, "deflate it, or store it"):
         check_archive(sent.getvalue(), ROOM)
 
 
@@ -189,14 +190,14 @@ def test_a_file_without_a_name_is_refused() -> None:
     torn[entry + 28] = 0
     size = int.from_bytes(good[end + 12 : end + 16], "little") - 1
     torn[end + 11 : end + 15] = size.to_bytes(4, "little")
-    with pytest.raises(WrongInputError, match="cannot be read"):
+    with refused_in_every_language(WrongInputError, "cannot be read"):
         check_archive(bytes(torn), ROOM)
 
 
 def test_many_files_are_refused() -> None:
-    with pytest.raises(WrongInputError, match="more than 500 files"):
+    with refused_in_every_language(WrongInputError, "more than 500 files"):
         check_archive(packed({f"{number}.txt": b"" for number in range(501)}), ROOM)
-    with pytest.raises(WrongInputError, match="more than 1000 files and folders"):
+    with refused_in_every_language(WrongInputError, "more than 1000 files and folders"):
         check_archive(packed({f"{number}/": b"" for number in range(1001)}), ROOM)
 
 
@@ -210,7 +211,7 @@ def test_a_mesh_may_name_a_picture_often_and_at_no_length() -> None:
     shade = b"<COLLADA>" + named + b"</COLLADA>"
     assert check_archive(packed({"meshes/shade.dae": shade, "red.png": PNG}), ROOM).version
     long = b"<COLLADA><image><init_from>" + b"a" * 900_000 + b".png</init_from></image></COLLADA>"
-    with pytest.raises(WrongInputError, match=r"shade\.dae names 'aaa"):
+    with refused_in_every_language(WrongInputError, r"shade\.dae names 'aaa"):
         check_archive(packed({"meshes/shade.dae": long}), ROOM)
 
 
@@ -248,7 +249,7 @@ def doubling(times: int) -> bytes:
     ],
 )
 def test_a_mesh_that_becomes_far_more_than_it_is_is_refused(shade: bytes, why: str) -> None:
-    with pytest.raises(WrongInputError, match=why):
+    with refused_in_every_language(WrongInputError, why):
         check_archive(packed({"meshes/shade.dae": shade}), ROOM)
 
 
@@ -260,7 +261,7 @@ def test_a_file_counts_as_often_as_it_is_drawn() -> None:
             "big.obj": OBJ + b"#" * 400_000,
         }
     )
-    with pytest.raises(WrongInputError, match="as often as it is drawn") as refused:
+    with refused_in_every_language(WrongInputError, "as often as it is drawn") as refused:
         check_archive(sent, ROOM)
     assert refused.value.limit == "model_bytes"
     assert check_archive(sent, 2 * ROOM).version
@@ -268,7 +269,7 @@ def test_a_file_counts_as_often_as_it_is_drawn() -> None:
 
 def test_many_shapes_are_refused() -> None:
     shapes = "<visual><geometry><box size='1 1 1'/></geometry></visual>" * 5001
-    with pytest.raises(WrongInputError, match="more than 5000 shapes"):
+    with refused_in_every_language(WrongInputError, "more than 5000 shapes"):
         check_description(urdf(f"<link name='b'>{shapes}</link>{JOINT}"))
 
 

@@ -9,6 +9,7 @@ from typing import ParamSpec, TypeVar
 
 import httpx
 import pytest
+from languages_of_console import refused_in_every_language, untold
 from people import serving_people
 from service_under_test import ServiceUnderTest, build
 from small_model import BARE, DESCRIPTION, OBJ, STL, packed
@@ -16,6 +17,8 @@ from small_model import BARE, DESCRIPTION, OBJ, STL, packed
 from mend.errors import ConflictError, NotFoundError, UnavailableError, WrongInputError
 from mend.server.access.deeds import deed_of
 from mend.server.access.roles import Role
+from mend.server.api.body_sizes import MODEL_BODY_BYTES
+from mend.server.api.gate import TOO_MANY_BODIES
 from mend.server.asking import asker
 from mend.server.errors import BusyError
 from mend.server.journal import events as ev
@@ -113,7 +116,9 @@ async def test_what_is_refused_leaves_what_was_there(
     refused = await client.put("/api/models/lamp", content=content, headers=headers)
     assert refused.status_code == status
     assert refused.headers["content-type"] == "application/problem+json"
-    assert why in refused.json()["detail"]
+    detail = refused.json()["detail"]
+    assert why in detail
+    assert untold([detail], ["clauses", "refusals"]) == []
     assert (await client.get("/api/models")).json() == [before]
     assert (await client.get(before["urdf"])).text == DESCRIPTION
 
@@ -128,6 +133,7 @@ async def test_a_model_is_fetched_whole_and_may_be_given_again(client: httpx.Asy
     again = await client.put("/api/models/twin", content=fetched.content, headers=ZIP)
     assert again.json() == {**kept, "name": "twin", "urdf": again.json()["urdf"]}
     nothing = await client.get("/api/models/other")
+    assert untold([nothing.json()["detail"]], ["refusals"]) == []
     assert (nothing.status_code, nothing.json()["detail"]) == (
         404, "there is no robot model 'other'",
     )  # fmt: skip
@@ -155,7 +161,7 @@ async def test_so_many_are_checked_or_wait_for_it_at_a_time(tmp_path: Path) -> N
 
     taken = [keep("anna", "lamp"), keep("anna", "post")]
     await checking.wait()
-    with pytest.raises(BusyError, match="too many robot models wait") as refused:
+    with refused_in_every_language(BusyError, "too many robot models wait") as refused:
         await keep("anna", "arm")
     assert refused.value.limit == "waiting_models"
     # One of each is taken however many wait.
@@ -181,7 +187,7 @@ async def test_a_version_that_is_replaced_meanwhile_is_gone_and_no_other(tmp_pat
     before, _ = await models.keep("lamp", packed(), ANNA, packed=True)
     after, _ = await models.keep("lamp", BARE.encode(), ANNA, packed=False)
     for file in ("robot.urdf", "meshes/base.obj"):
-        with pytest.raises(NotFoundError, match="of this version any more"):
+        with refused_in_every_language(NotFoundError, "of this version any more"):
             before.read(file)
     assert after.read("robot.urdf").decode() == BARE
     journal.close()
@@ -226,11 +232,20 @@ async def test_models_are_there_after_a_restart(tmp_path: Path) -> None:
     journal.close()
 
 
+async def test_too_much_at_once_is_refused_in_every_language(client: httpx.AsyncClient) -> None:
+    large = {**ZIP, "Content-Length": str(MODEL_BODY_BYTES + 1)}
+    refused = await client.put("/api/models/lamp", content=b"", headers=large)
+    assert (refused.status_code, refused.json()["detail"]) == (
+        413, "the body is larger than 32 MiB",
+    )  # fmt: skip
+    assert untold([refused.json()["detail"], TOO_MANY_BODIES], ["refusals"]) == []
+
+
 @pytest.mark.parametrize("name", [".", "..", "left/arm"])
 async def test_a_name_is_one_part_of_an_address(tmp_path: Path, name: str) -> None:
     journal = SqliteJournal(":memory:")
     models = own_models(tmp_path / "models", journal)
-    with pytest.raises(WrongInputError, match="one part of an address"):
+    with refused_in_every_language(WrongInputError, "one part of an address"):
         await models.keep(name, packed(), ANNA, packed=True)
     journal.close()
 
@@ -238,9 +253,9 @@ async def test_a_name_is_one_part_of_an_address(tmp_path: Path, name: str) -> No
 async def test_names_of_worlds_models_are_theirs(tmp_path: Path) -> None:
     journal = SqliteJournal(":memory:")
     models = own_models(tmp_path / "models", journal)
-    with pytest.raises(ConflictError, match="'pr2' is that of a world"):
+    with refused_in_every_language(ConflictError, "'pr2' is that of a world"):
         await models.keep("pr2", packed(), ANNA, packed=True)
-    with pytest.raises(ConflictError, match="'pr2' is that of a world"):
+    with refused_in_every_language(ConflictError, "'pr2' is that of a world"):
         await models.delete("pr2", ANNA)
     journal.close()
 
@@ -250,7 +265,7 @@ async def test_all_together_have_so_much_room(tmp_path: Path) -> None:
     models = own_models(tmp_path / "models", journal, Limits(models_bytes=size + size // 2))
     await models.keep("lamp", packed(), ANNA, packed=True)
     await models.keep("lamp", packed(), ANNA, packed=True)
-    with pytest.raises(ConflictError, match="there is no room for the robot model 'other'"):
+    with refused_in_every_language(ConflictError, "there is no room for the robot model 'other'"):
         await models.keep("other", packed(), ANNA, packed=True)
     assert [each.name for each in models.all()] == ["lamp"]
     journal.close()
@@ -299,7 +314,7 @@ async def test_what_the_disk_does_not_take_or_give_up_is_told_in_a_sentence(
 ) -> None:
     journal = SqliteJournal(":memory:")
     (tmp_path / "file").write_text("no folder")
-    with pytest.raises(UnavailableError, match="the robot model 'lamp' cannot be kept: "):
+    with refused_in_every_language(UnavailableError, "the robot model 'lamp' cannot be kept: "):
         await own_models(tmp_path / "file", journal).keep("lamp", packed(), ANNA, packed=True)
     models = own_models(tmp_path / "models", journal)
     model, _ = await models.keep("lamp", packed(), ANNA, packed=True)
@@ -308,7 +323,7 @@ async def test_what_the_disk_does_not_take_or_give_up_is_told_in_a_sentence(
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "unlink", fail)
-    with pytest.raises(UnavailableError, match="cannot be deleted: Permission denied"):
+    with refused_in_every_language(UnavailableError, "cannot be deleted: Permission denied"):
         await models.delete("lamp", ANNA)
     assert models.all() == [model]
     journal.close()

@@ -12,7 +12,8 @@ const SOURCES = join(WEB, "src");
 const TEXTS = join(WEB, "texts");
 /** The files of a language whose texts the code says; the others are the service's. */
 const SAID_HERE = ["answering", "console", "notices"];
-const ALL_FILES = [...SAID_HERE, "sentences", "clauses"];
+const OF_SERVICE = ["sentences", "clauses", "refusals"];
+const ALL_FILES = [...SAID_HERE, ...OF_SERVICE];
 /** From these everything is loaded before a question can be answered, and before a notice is shown. */
 const ANSWERING = ["begin.tsx", "question/queue_list.tsx"];
 const NOTICES = "calling/notices.ts";
@@ -34,7 +35,7 @@ export function problems() {
     const texts = Object.fromEntries(ALL_FILES.map((name) => [name, textsOf(language, name)]));
     for (const name of SAID_HERE) found.push(...compared(`${language}/${name}.json`, here[name], texts[name]));
     for (const name of ALL_FILES) found.push(...misfilled(language, `${language}/${name}.json`, texts[name]));
-    for (const name of ["sentences", "clauses"]) {
+    for (const name of OF_SERVICE) {
       const first = Object.keys(textsOf(languages[0], name));
       found.push(...compared(`${language}/${name}.json`, new Set(first), texts[name]));
     }

@@ -1,6 +1,5 @@
 """Who is idle is asked first, and an unanswered ask climbs a ladder that ends."""
 
-from collections.abc import Sequence
 from uuid import UUID
 
 import pytest
@@ -10,6 +9,8 @@ from pydantic import ValidationError
 
 from mend.server.dialogues.duty import Duty, WaitingQuestion
 from mend.server.dialogues.escalation import (
+    FIRST,
+    NOBODY,
     EscalationPolicy,
     Exhausted,
     Mail,
@@ -23,13 +24,13 @@ from mend.server.dialogues.escalation import (
 )
 
 
-def rungs(policy: EscalationPolicy, there: Sequence[str] = ()) -> list[Rung]:
+def rungs(policy: EscalationPolicy, duty: Duty = NOBODY) -> list[Rung]:
     """Every rung, up to and with the one that says that nobody is left; nobody has other work."""
     climbed: list[Rung] = []
-    asked: list[str | None] = [first_helper(policy)]
+    asked: list[str | None] = [first_helper(policy, duty)]
     while not climbed or climbed[-1] != Exhausted():
         mailed = any(isinstance(each, Mail) for each in climbed)
-        rung = next_rung(policy, Standing(tuple(asked), mailed), Duty(there))
+        rung = next_rung(policy, Standing(tuple(asked), mailed), duty)
         climbed.append(rung)
         asked.append(rung.helper if isinstance(rung, Repeat | ToHelper) else asked[-1])
     return climbed
@@ -69,7 +70,7 @@ def test_before_it_is_mailed_it_goes_to_whoever_is_signed_in_and_was_not_asked_l
     policy = EscalationPolicy(
         helpers=("ana", "ben"), repeats=1, operators=("ops@example.org",), answer_within_s=30.0
     )
-    assert rungs(policy, there=["dan", "ben", "ana"]) == [
+    assert rungs(policy, Duty(["dan", "ben", "ana"])) == [
         Repeat("ana", 30.0),
         ToHelper("ben", 30.0),
         ToHelper("dan", 30.0),
@@ -87,7 +88,7 @@ def test_who_signs_in_after_the_operators_were_written_to_is_called_all_the_same
 
 
 def test_where_everybody_is_asked_nobody_is_called_once_more() -> None:
-    assert rungs(EscalationPolicy(), there=["dan"]) == [Repeat(None, 60.0), Exhausted()]
+    assert rungs(EscalationPolicy(), Duty(["dan"])) == [Repeat(None, 60.0), Exhausted()]
 
 
 def test_what_a_robot_does_not_wait_for_is_asked_of_somebody_who_is_there() -> None:
@@ -95,7 +96,7 @@ def test_what_a_robot_does_not_wait_for_is_asked_of_somebody_who_is_there() -> N
     assert first_helper(policy, Duty(["dan", "ben"]), waits=False) == "ben"
     assert first_helper(policy, Duty(["dan"]), waits=False) == "dan"
     assert first_helper(policy, Duty(), waits=False) == "ana"
-    assert first_helper(policy, Duty(["dan"])) == "ana"
+    assert first_helper(policy, Duty(["dan"], on=[(UUID(int=1), "dan")])) == "ana"
     busy = Duty(["dan"], questions=[WaitingQuestion(UUID(int=1), ["dan"])])
     assert first_helper(policy, busy, waits=False) == "dan"
     assert first_helper(policy, Duty(["dan"], on=[(UUID(int=1), "dan")]), waits=False) == "ana"
@@ -116,6 +117,54 @@ def test_who_is_idle_is_asked_before_who_is_busy() -> None:
     assert first_helper(TWO, Duty(["ana", "ben"], questions=[put(1, "ana")])) == "ben"
     both = Duty(["ana", "ben"], on, [put(1, "ana"), put(2, "ben")])
     assert first_helper(TWO, both) == "ben"
+
+
+def test_who_is_here_is_asked_before_who_is_away_and_who_is_away_before_who_is_busy() -> None:
+    both = ["ben", "ana"]
+    assert first_helper(TWO, Duty(both)) == "ana"
+    assert first_helper(TWO, Duty(both, away=["ana"])) == "ben"
+    assert first_helper(TWO, Duty(both, away=both)) == "ana"
+    assert first_helper(TWO, Duty(both, [(UUID(int=7), "ben")], away=["ana"])) == "ana"
+    # Of those who are not here, who hears a call: at a page that was left, or by a push.
+    assert first_helper(TWO, Duty(["ben"], away=["ben"])) == "ben"
+    assert first_helper(TWO, Duty(called=["ben"])) == "ben"
+    assert first_helper(TWO, Duty(["ben"], away=["ben"], called=["ana"])) == "ana"
+    # Somebody whom the policy does not name is asked where they are here, not where they were.
+    assert first_helper(TWO, Duty(["dan"])) == "dan"
+    assert first_helper(TWO, Duty(["dan"], away=["dan"])) == "ana"
+
+
+def test_what_a_robot_does_not_wait_for_is_asked_of_who_is_here_first() -> None:
+    assert first_helper(TWO, Duty(["ana", "ben"], away=["ana"]), waits=False) == "ben"
+    assert first_helper(TWO, Duty(["dan"], away=["dan"]), waits=False) == "dan"
+
+
+def test_who_is_away_is_called_though_later() -> None:
+    assert rungs(TWO, Duty(["ana", "ben", "dan"], away=["ana"])) == [
+        Repeat("ben", 60.0),
+        ToHelper("dan", 60.0),
+        ToHelper("ana", 60.0),
+        ToHelper("ben", 60.0),
+        ToHelper("dan", 60.0),
+        Exhausted(),
+    ]
+    everybody = ["ana", "ben", "dan"]
+    assert rungs(TWO, Duty(everybody, away=everybody)) == [
+        Repeat("ana", 60.0),
+        ToHelper("ben", 60.0),
+        ToHelper("ana", 60.0),
+        ToHelper("dan", 60.0),
+        Exhausted(),
+    ]
+
+
+def test_a_question_goes_on_from_who_is_away_to_who_is_here_and_never_the_other_way() -> None:
+    waiting = [put(1, "ana")]
+    assert handed_on(TWO, Duty(["ana", "ben"], (), waiting, away=["ana"])) == {UUID(int=1): "ben"}
+    assert handed_on(TWO, Duty(["ben"], (), waiting)) == {UUID(int=1): "ben"}
+    assert handed_on(TWO, Duty(["ana", "ben"], (), waiting, away=["ana", "ben"])) == {}
+    on = [(UUID(int=7), "ana")]
+    assert handed_on(TWO, Duty(["ana", "ben"], on, waiting, away=["ben"])) == {}
 
 
 def test_nobody_busy_is_asked_again_or_next_beside_somebody_idle() -> None:
@@ -156,29 +205,34 @@ def test_no_question_goes_on_that_somebody_is_at_or_to_who_was_asked_it() -> Non
     ),
     asked=st.lists(st.lists(st.sampled_from("abcdefg"), min_size=1, max_size=4), max_size=8),
     helpers=st.lists(st.sampled_from("abcdefg"), unique=True, min_size=1),
+    left=st.sets(st.sampled_from("abcdefg")),
 )
-def test_no_question_waits_for_who_is_busy_while_somebody_is_idle(
-    there: list[str], on: list[tuple[UUID, str]], asked: list[list[str]], helpers: list[str]
+def test_no_question_waits_for_who_is_busy_or_away_while_somebody_is_idle(
+    there: list[str],
+    on: list[tuple[UUID, str]],
+    asked: list[list[str]],
+    helpers: list[str],
+    left: set[str],
 ) -> None:
     policy = EscalationPolicy(helpers=tuple(helpers))
     questions = [put(number, *each) for number, each in enumerate(asked)]
     moves = 0
-    while found := handed_on(policy, duty := Duty(there, on, questions)):
+    while found := handed_on(policy, duty := Duty(there, on, questions, away=left)):
         # Whichever run is first.
         dialogue, to = next(iter(found.items()))
         assert to in duty.idle
         (moved,) = [each for each in questions if each.dialogue == dialogue]
-        assert duty.before(str(moved.helper), dialogue) > 0
+        assert duty.rank(str(moved.helper), dialogue) > FIRST
         questions.remove(moved)
         questions.append(put(dialogue.int, *moved.asked, to))
         moves += 1
     assert moves <= len(asked) * len(there)
     for each in duty.questions:
-        if duty.before(str(each.helper), each.dialogue):
+        if duty.rank(str(each.helper), each.dialogue) > FIRST:
             assert set(duty.idle) <= set(each.asked)
     new = first_helper(policy, duty)
     assert new is not None
-    assert not (duty.idle and duty.before(new))
+    assert not duty.idle or duty.rank(new) == FIRST
 
 
 @given(

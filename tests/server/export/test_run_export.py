@@ -16,6 +16,7 @@ import httpx
 import jsonschema_rs
 import pytest
 from fake_runs import FakeRuns
+from foxglove_rules import mistakes_in
 from mcap.reader import make_reader
 from recorded_service import recorded_events
 from service_under_test import build
@@ -175,7 +176,11 @@ async def test_and_where_everything_was(exported: Exported) -> None:
     assert joints == pytest.approx([each / 100 for each in exported.times], abs=1e-6)
     assert {each.said["opening_m"] for each in found["/arm/gripper"]} == {0.05}
     [scene] = found["/scene"]
-    assert {each["id"] for each in scene.said["entities"]} == {"cup", "table"}
+    assert {each["id"] for each in scene.said["entities"]} == {"cup", "arm/table"}
+
+
+async def test_there_is_nothing_in_it_that_foxglove_would_not_show(exported: Exported) -> None:
+    assert mistakes_in(await exported.file("mcap"), decodes=False) == []
 
 
 async def test_a_run_of_which_nothing_was_recorded_has_its_events(exported: Exported) -> None:

@@ -35,7 +35,9 @@ async def asked_one_after_the_other(*attending: str, policy: EscalationPolicy) -
 
 async def test_a_question_goes_on_to_whoever_is_there_before_it_is_given_up() -> None:
     assert await asked_one_after_the_other("dan", "eve", policy=ANN_ALONE) == [
-        "ann",
+        "dan",
+        "dan",
+        "eve",
         "ann",
         "dan",
         "eve",
@@ -60,7 +62,7 @@ async def test_each_question_says_whom_the_robot_asks_next() -> None:
             _, events = await service.run_to_end(answers="none", max_attempts=1)
     asks = [each for each in events if isinstance(each, ev.Prompt) and each.kind == "ask"]
     said = [each.timeout_effect.split("; if nobody")[0] for each in asks[:4]]
-    assert said[:3] == ["I ask again", "I ask dan", "I write to the operators"]
+    assert said == ["I ask again", "I ask ann", "I ask dan", "I write to the operators"]
 
 
 def test_somebody_with_two_devices_is_there_until_both_are_gone() -> None:
@@ -72,3 +74,58 @@ def test_somebody_with_two_devices_is_there_until_both_are_gone() -> None:
         assert attendance.there == ["ann", "ben"]
     assert attendance.there == []
     assert heard[-3:] == [["ann", "ben"], ["ann"], []]
+
+
+class Wall:
+    """A clock that goes when it is told."""
+
+    now_s = 0.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+def test_who_has_done_nothing_for_a_while_or_has_left_the_page_is_away() -> None:
+    clock, heard = Wall(), list[list[str]]()
+    attendance = Attendance(clock, away_after_s=300.0)
+    attendance.changed = lambda: heard.append(attendance.away)
+    with (
+        attendance.attending("ann", "active") as page,
+        attendance.attending("ben", "beside"),
+        attendance.attending("cem"),
+    ):
+        assert attendance.away == []
+        clock.now_s = 299.0
+        attendance.says("ann", page, "active")
+        clock.now_s = 598.0
+        assert attendance.away == []
+        clock.now_s = 599.0
+        assert attendance.away == ["ann"]
+        attendance.says("ann", page, "active")
+        assert attendance.away == []
+        attendance.says("ann", page, "away")
+        assert attendance.away == ["ann"]
+        assert attendance.there == ["ann", "ben", "cem"]
+        # Only what changes who is here is told.
+        assert heard == [[], [], [], [], ["ann"]]
+
+
+def test_somebody_is_here_who_is_at_one_of_their_devices() -> None:
+    attendance = Attendance(Wall())
+    with attendance.attending("ann", "away"):
+        assert attendance.away == ["ann"]
+        with attendance.attending("ann", "active"):
+            assert attendance.away == []
+        assert attendance.away == ["ann"]
+
+
+async def test_a_page_that_was_left_is_called_after_who_is_here() -> None:
+    attendance = Attendance(Wall())
+    policy = EscalationPolicy(helpers=("ann", "ben"), repeats=0)
+    with attendance.attending("ann", "away"), attendance.attending("ben", "active"):
+        async with pretend_service(
+            ONE_PART, FAULT, policy=policy, attendance=attendance
+        ) as service:
+            _, events = await service.run_to_end(answers="none", max_attempts=1)
+    asks = [each.to for each in events if isinstance(each, ev.Prompt) and each.kind == "ask"]
+    assert asks[:2] == ["ben", "ann"]

@@ -9,7 +9,7 @@ import pytest
 from answer_races import ONE_PART
 from pretend_service import PretendService, pretend_service
 
-from mend.server.dialogues.attendance import Attendance
+from mend.server.dialogues.attendance import Attendance, Device, Presence
 from mend.server.dialogues.escalation import EscalationPolicy
 from mend.server.journal import events as ev
 from mend.server.runtime.requests import RunRequest
@@ -25,11 +25,16 @@ class Floor:
         self.service = service
         self._attendance = attendance
         self._there: dict[str, ExitStack] = {}
+        self._pages: dict[str, Device] = {}
 
     def comes(self, *helpers: str) -> None:
         for helper in helpers:
             self._there[helper] = ExitStack()
-            self._there[helper].enter_context(self._attendance.attending(helper))
+            attending = self._attendance.attending(helper)
+            self._pages[helper] = self._there[helper].enter_context(attending)
+
+    def says(self, helper: str, presence: Presence) -> None:
+        self._attendance.says(helper, self._pages[helper], presence)
 
     def goes(self, helper: str) -> None:
         self._there.pop(helper).close()
@@ -84,8 +89,8 @@ async def floor() -> AsyncIterator[Floor]:
 async def test_questions_of_several_robots_are_put_to_several_helpers(floor: Floor) -> None:
     floor.comes("cem", "ben", "dan")
     asked = [(await floor.ask()).to for _ in range(6)]
-    # Whoever is called first is, wherever they are; then those who are there, in their order.
-    assert asked == ["ann", "ben", "cem", "dan", "ann", "ben"]
+    # Those who are here, in the order of the policy; then who is not, before any has two.
+    assert asked == ["ben", "cem", "dan", "ann", "ben", "cem"]
 
 
 async def test_a_question_goes_on_as_soon_as_somebody_else_is_idle(floor: Floor) -> None:
@@ -121,12 +126,26 @@ async def test_what_waits_for_who_is_on_another_goes_to_whoever_signs_in(floor: 
 async def test_nobody_is_called_away_from_a_question_that_they_wanted_time_for(
     floor: Floor,
 ) -> None:
-    floor.comes("ann")
+    floor.comes("ann", "ben", "cem")
     waiting = [await floor.ask() for _ in range(4)]
     assert [each.to for each in waiting] == ["ann", "ben", "cem", "ann"]
     await floor.service.runtime.dialogues.extend(waiting[3].dialogue, waiting[3].prompt, "ann")
     floor.comes("dan")
     assert await floor.events(ev.HandedOn) == []
+
+
+async def test_what_waits_at_a_page_that_was_left_goes_to_who_is_here(floor: Floor) -> None:
+    floor.comes("ann")
+    first = await floor.ask()
+    floor.comes("ben")
+    assert await floor.events(ev.HandedOn) == []
+    floor.says("ann", "away")
+    await floor.goes_on(first, "ben")
+    # Nobody is here who has nothing to do: the one who is away is called all the same.
+    second = await floor.ask()
+    assert second.to == "ann"
+    floor.says("ann", "active")
+    assert len(await floor.events(ev.HandedOn)) == 1
 
 
 async def test_scripted_questions_keep_nobody_busy(floor: Floor) -> None:

@@ -1,14 +1,12 @@
 """What helpers are refused while they answer is in every language that the console speaks."""
 
 import asyncio
-import json
-import re
 from collections.abc import AsyncIterator, Awaitable
-from pathlib import Path
 from uuid import uuid4
 
 import pytest
 from answer_races import ONE_PART
+from languages_of_console import LANGUAGES, untold
 from pretend_service import PretendService, pretend_service
 from test_helping import FAULT, open_question, prompt_in
 from test_words_on_help import events_of, of_type, promised
@@ -22,28 +20,6 @@ from mend.server.journal import events as ev
 from mend.server.runtime.requests import RunRequest
 from mend.server.runtime.run_dialogues import RunDialogues
 from mend.server.runtime.views import DialogueView
-
-TEXTS = Path(__file__).parents[3] / "web" / "texts"
-LANGUAGES = sorted(each.name for each in TEXTS.iterdir())
-
-
-def untold(sentences: list[str]) -> list[str]:
-    """Those for which a language has no text, as the console looks for it (`said.ts`)."""
-    missing = []
-    for language in LANGUAGES:
-        keys = json.loads((TEXTS / language / "clauses.json").read_text())
-        patterns = [re.compile(pattern_of(key), re.IGNORECASE) for key in keys]
-        missing += [each for each in sentences if not any(p.fullmatch(each) for p in patterns)]
-    return missing
-
-
-def pattern_of(key: str) -> str:
-    pieces = re.split(r"\{(\w+)\}", key)
-    fields = (".+" if name == "rest" else "[^,;:?!]{1,80}?" for name in pieces[1::2])
-    escaped = map(re.escape, pieces[::2])
-    return next(escaped) + "".join(
-        field + text for field, text in zip(fields, escaped, strict=True)
-    )
 
 
 async def refusal(asked: Awaitable[object]) -> str:

@@ -3,6 +3,7 @@ import type { ConnectionState } from "../wire/helper_socket";
 import { fleets } from "../requests/fleets";
 import { questions } from "../state/questions";
 import { helperName } from "../state/preferences";
+import { presence } from "../calling/presence";
 import { connection } from "../state/service";
 import { route } from "./router";
 import { t } from "../words/words";
@@ -62,6 +63,7 @@ export function Header() {
       <Connection />
       <a class="who" href="/settings" aria-current={view === "settings" ? "page" : undefined}>
         {helperName.value}
+        {presence.value === "away" && <span class="small">{`\u00a0${t("(away)")}`}</span>}
       </a>
     </header>
   );

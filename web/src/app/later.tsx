@@ -4,10 +4,14 @@ import { useEffect, useState } from "preact/hooks";
 import { t } from "../words/words";
 import { loadOtherWords } from "../words/load";
 
-/** `words` brings what the view says, where the answering path does not say it already. */
+/**
+ * `words` brings what the view says, where the answering path does not say it already. `aside`: nothing is in its
+ * place until it is there, as it stands below what people have come for.
+ */
 export function later<P extends object>(
   load: () => Promise<ComponentType<P>>,
   words: () => Promise<void> = loadOtherWords,
+  aside = false,
 ): ComponentType<P> {
   let loaded: ComponentType<P> | null = null;
   return function Later(props: P) {
@@ -24,6 +28,7 @@ export function later<P extends object>(
       );
     }, []);
     if (loaded !== null) return createElement(loaded, props);
+    if (aside) return null;
     if (state === "failed") return <p class="page">{t("This view could not be loaded. Is the service there?")}</p>;
     return <p class="page quiet">{t("Loading …")}</p>;
   };

@@ -3,7 +3,7 @@ import { useRef } from "preact/hooks";
 import "../run/tabs.css";
 import type { Plan, PlanFloor } from "./plan";
 import type { SeenRobot } from "./seen_robots";
-import { t } from "../words/words";
+import { t, tn } from "../words/words";
 
 interface FloorTabsProps {
   plan: Plan;
@@ -52,16 +52,19 @@ export function FloorTabs({ plan, shown, seen, onChoose }: FloorTabsProps) {
 
 function Robots({ there }: { there: readonly SeenRobot[] }) {
   if (there.length === 0) return null;
-  const asks = there.some(({ activity, unseen }) => activity === "asking" && unseen === null);
+  const asks = there.filter(({ activity, unseen }) => activity === "asking" && unseen === null).length;
   return (
-    <span class={`plan-count ${asks ? "asking" : ""}`}>
-      {there.length}
-      <span class="unseen"> {there.length === 1 ? t("robot") : t("robots")}</span>
-      {asks && (
-        <>
-          ?<span class="unseen"> {t("one asks")}</span>
-        </>
+    <>
+      <span class="plan-count">
+        {there.length}
+        <span class="unseen"> {there.length === 1 ? t("robot") : t("robots")}</span>
+      </span>
+      {asks > 0 && (
+        <span class="plan-count asking">
+          <span aria-hidden="true">? {asks}</span>
+          <span class="unseen">{tn("one asks", "{count} ask", { count: asks })}</span>
+        </span>
       )}
-    </span>
+    </>
   );
 }

@@ -21,6 +21,9 @@ interface RobotsListProps {
   changed(): void;
 }
 
+/** Of more robots what may be done is folded, so that they stand together with the plan. */
+const FEW = 6;
+
 export function RobotsList({ fleet, seen, events, onShow, changed }: RobotsListProps) {
   return (
     <section class="panel" aria-labelledby="fleet-robots-title">
@@ -74,7 +77,7 @@ function Row({ fleet, robot, seen, came, onShow, changed }: RowProps) {
         {robot.pose?.covariance != null && ` ${t("(sure to {distance})", { distance: sureInWords(robot.pose.covariance) })}`}; {isAtInWords(robot)}.{robot.battery !== null && ` ${t("Battery {percent} %.", { percent: Math.round(100 * robot.battery) })}`}{robot.aboard.length > 0 && ` ${t("It has {aboard} aboard.", { aboard: robot.aboard.join(", ") })}`}
       </p>
       {came !== null && <p class="small quiet">{errandInWords(came)}</p>}
-      {may("operator") && <Deeds {...{ fleet, robot, changed }} />}
+      {may("operator") && (fleet.robots.length > FEW ? <FoldedDeeds {...{ fleet, robot, changed }} /> : <Deeds {...{ fleet, robot, changed }} />)}
     </li>
   );
 }
@@ -96,7 +99,25 @@ function State({ robot, seen: { activity, unseen, where } }: { robot: FleetRobot
 
 type Asked = "send" | "out" | null;
 
-function Deeds({ fleet, robot, changed }: { fleet: FleetView; robot: FleetRobot; changed(): void }) {
+interface DeedsProps {
+  fleet: FleetView;
+  robot: FleetRobot;
+  changed(): void;
+}
+
+function FoldedDeeds(props: DeedsProps) {
+  return (
+    <details class="fleet-folded">
+      <summary class="small">
+        {t("Send it, or take it out of service")}
+        <span class="unseen"> {robotName(props.robot.robot)}</span>
+      </summary>
+      <Deeds {...props} />
+    </details>
+  );
+}
+
+function Deeds({ fleet, robot, changed }: DeedsProps) {
   const [asked, setAsked] = useState<Asked>(null);
   const [failure, setFailure] = useState("");
   const name = robotName(robot.robot);

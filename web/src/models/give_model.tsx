@@ -1,6 +1,7 @@
 // The file that is to be a model: under which name, and why the service does not take it.
 import { useEffect, useId, useRef, useState } from "preact/hooks";
 import type { ModelView } from "../wire/types";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 import { keepModel } from "./model_calls";
 import { isName, type ModelFile } from "./model_file";
@@ -30,7 +31,7 @@ export function GiveModel({ given, models, missing, onKept, onCancel }: GiveMode
       await keepModel(name, given);
       onKept();
     } catch (error) {
-      setMistake((error as Error).message);
+      setMistake(whyNotDone(error));
     } finally {
       setBusy(false);
     }

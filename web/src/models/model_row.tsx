@@ -3,6 +3,7 @@ import { useState } from "preact/hooks";
 import { Confirm } from "../app/confirm";
 import { may } from "../state/access";
 import type { ModelView } from "../wire/types";
+import { whyNotDone } from "../words/said";
 import { t, tn } from "../words/words";
 import { deleteModel, modelPath } from "./model_calls";
 
@@ -43,7 +44,7 @@ function ModelActions({ model: { name }, robots, onDeleted }: ModelRowProps) {
       await deleteModel(name);
       onDeleted();
     } catch (error) {
-      setMistake((error as Error).message);
+      setMistake(whyNotDone(error));
     }
   };
   return (

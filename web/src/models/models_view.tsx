@@ -5,6 +5,7 @@ import { may, whyNot } from "../state/access";
 import { connection } from "../state/service";
 import * as rest from "../wire/rest";
 import type { ModelView, RobotView } from "../wire/types";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 import { GiveModel } from "./give_model";
 import * as calls from "./model_calls";
@@ -25,7 +26,7 @@ export function ModelsView() {
         setModels(found);
         setRobots(there);
       },
-      (error: Error) => setMistake(error.message),
+      (error: Error) => setMistake(whyNotDone(error)),
     );
   useEffect(() => void read(), [connected]);
   const take = (file: File) => {

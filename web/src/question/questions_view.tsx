@@ -7,6 +7,7 @@ import { Endings } from "./endings_list";
 import { QuestionCard } from "./question_card";
 import { queue, shown, stopChoosing } from "./queue";
 import { later } from "../app/later";
+import { loadOtherWords } from "../words/load";
 import { AwaitedHelpCard, TogetherCard } from "./waiting_cards";
 import { AtAGlance } from "./at_a_glance";
 import { t } from "../words/words";
@@ -23,6 +24,9 @@ const GOING: ReadonlySet<RunStatus> = new Set<RunStatus>(["running", "paused"]);
 // Few runs are steered.
 const RunWaits = later(() => import("../run/steering/run_waits").then((module) => module.RunWaits));
 
+// Whom robots ask besides is no part of answering.
+const WhoHelps = later(() => import("./who_helps").then((module) => module.WhoHelps), loadOtherWords, true);
+
 export function QuestionsView() {
   useEffect(() => stopChoosing, []);
   const question = shown.value;
@@ -38,6 +42,7 @@ export function QuestionsView() {
         {question !== null && <QuestionCard key={question.dialogue} question={question} />}
         {question === null && waiting && <Waiting />}
         {question === null && !waiting && <AtAGlance />}
+        <WhoHelps />
       </div>
       {beside && (
         <aside class="questions-side" aria-label={t("Also going on")}>

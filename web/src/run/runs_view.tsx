@@ -1,6 +1,7 @@
 // The list of runs, newest first, by state.
 import { signal } from "@preact/signals";
 import { may } from "../state/access";
+import { robotName } from "../question/fault_words";
 import { questions } from "../state/questions";
 import { useNow } from "../state/use_now";
 import type { RunStatus, RunSummary } from "../wire/types";
@@ -112,6 +113,7 @@ function Row({ run, now }: { run: RunSummary; now: number }) {
           <span class="small quiet">
             {run.world}
             {run.scenario !== null && ` · ${run.scenario}`}
+            {run.robots.length > 0 && ` · ${robotsInWords(run.robots)}`}
           </span>
         </span>
         <span class="run-outcome">
@@ -126,6 +128,15 @@ function Row({ run, now }: { run: RunSummary; now: number }) {
       </a>
     </li>
   );
+}
+
+const NAMED_AT_MOST = 3;
+
+/** Of what is done for people each run has one robot, and nothing else tells them apart. */
+function robotsInWords(robots: readonly string[]): string {
+  const names = robots.slice(0, NAMED_AT_MOST).map(robotName).join(", ");
+  const more = robots.length - NAMED_AT_MOST;
+  return more > 0 ? t("{names} and {more} more", { names, more }) : names;
 }
 
 function NoRunsYet() {

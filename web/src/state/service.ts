@@ -4,7 +4,9 @@ import { type ConnectionState, HelperSocket } from "../wire/helper_socket";
 import * as rest from "../wire/rest";
 import type { Told } from "../wire/told";
 import type { Event, RunStatus, RunSummary, SnapshotMessage } from "../wire/types";
-import { principal, role } from "./access";
+import { awayAfter, onPresence, presence } from "../calling/presence";
+import type { Presence } from "../calling/at_page";
+import { may, principal, role } from "./access";
 import { helperName, pushOn } from "./preferences";
 import { takeDialogueEvent, takeDialogues } from "./questions";
 
@@ -114,16 +116,25 @@ export function command(message: Parameters<HelperSocket["send"]>[0]): ReturnTyp
 
 function connect(): void {
   socket?.close();
-  socket = new HelperSocket(helperName.value, {
+  const receiver = {
     snapshot: takeSnapshot,
     event: takeEvent,
     state: becomes,
-    trouble: (reason) => {
+    trouble: (reason: string | null) => {
       trouble.value = reason;
     },
     mayReconnect,
-  });
+  };
+  socket = new HelperSocket(helperName.value, receiver, () => presence.value);
   socket.connect();
+}
+
+function tellPresence(now: Presence): void {
+  if (!may("helper")) return;
+  command({ type: "here", presence: now }).then(
+    ({ away_after_s }) => awayAfter(Number(away_after_s)),
+    () => undefined,
+  );
 }
 
 function becomes(state: ConnectionState): void {
@@ -141,6 +152,8 @@ async function mayReconnect(): Promise<boolean> {
 }
 
 function takeSnapshot(snapshot: SnapshotMessage): void {
+  // The address said so when this connection was begun.
+  tellPresence(presence.value);
   const next = new Map(runs.value);
   for (const run of snapshot.runs) next.set(run.id, run);
   runs.value = next;
@@ -183,6 +196,7 @@ function endSession(): void {
   session.value = "needs_token";
 }
 
+onPresence(tellPresence);
 rest.onSignedOut(endSession);
 window.addEventListener("online", () => socket?.hurry());
 window.addEventListener("offline", () => socket?.drop());

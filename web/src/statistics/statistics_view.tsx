@@ -139,7 +139,7 @@ function Told({ found }: { found: Statistics }) {
           "A fault is an issue that a robot raised. A pick is a gripper that closed to take something. An answer is a person's, from when its question was put first.",
         )}
       </p>
-      <Groups title={t("By kind of fault")} kind="fault" name={t("Fault")} grouped={found.by_issue} allPicks />
+      <Groups title={t("By kind of fault")} kind="fault" name={t("Kind")} grouped={found.by_issue} allPicks />
       <Groups title={t("By part")} kind="part" name={t("Part")} grouped={found.by_part} />
       <Groups title={t("By robot")} kind="robot" name={t("Robot")} grouped={found.by_robot} />
       <Groups title={t("By task tree")} kind="task-tree" name={t("Task tree")} grouped={found.by_tree} />

@@ -30,8 +30,8 @@ export function TreeDetails({ tree }: { tree: string }) {
         {tn("{count} node", "{count} nodes", { count: nodes })}
         {scene !== null && (
           <>
-            {t("· scene")}
-            {may("operator") ? <a href={`/edit_scene/${scene}`}>{scene}</a> : scene}
+            {" "}
+            {t("· scene")} {may("operator") ? <a href={`/edit_scene/${scene}`}>{scene}</a> : scene}
           </>
         )}
         {found.built_in && <> {t("· built in: copy it to change it")}</>}

@@ -41,6 +41,7 @@ export class HelperSocket {
   constructor(
     private readonly helper: string,
     private readonly receiver: Receiver,
+    private readonly presence: () => string,
   ) {}
 
   connect(): void {
@@ -87,6 +88,7 @@ export class HelperSocket {
     address.protocol = address.protocol === "https:" ? "wss:" : "ws:";
     address.searchParams.set("helper", this.helper);
     address.searchParams.set("told", "true");
+    address.searchParams.set("presence", this.presence());
     if (this.#seen !== null) address.searchParams.set("after", String(this.#seen));
     return address;
   }

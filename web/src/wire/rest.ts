@@ -12,6 +12,7 @@ import type {
   DocumentView,
   Event,
   FleetView,
+  HelpersView,
   Intervention,
   IssueSummary,
   Layout,
@@ -181,6 +182,8 @@ export async function beginning(id: string): Promise<RunStarted | null> {
 
 export const dialogue = (id: string) =>
   call<DialogueView>("GET", `/api/dialogues/${segment(id)}`);
+/** Who may be asked now, and who of them is here, away or busy. */
+export const helpers = () => call<HelpersView>("GET", "/api/helpers");
 /** The open questions of all runs, the most urgent first; those that may be answered alike together. */
 export const questionBatches = () => call<QuestionBatchView[]>("GET", "/api/questions");
 /** Choose a way for several questions at once. */

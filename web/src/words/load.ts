@@ -1,6 +1,6 @@
 // Brings the words of the reader's language, a file at a time: nobody waits for those of pages not looked at.
 import { language } from "./language";
-import { takeSentences } from "./said";
+import { takeClauses, takeSentences } from "./said";
 import { addWords, type Words } from "./words";
 
 /** Every file of texts by where it lies. */
@@ -18,9 +18,10 @@ export async function loadAnsweringWords(): Promise<void> {
   takeSentences(sentences, clauses);
 }
 
-/** What the other pages say. */
-export function loadOtherWords(): Promise<void> {
-  return load("console");
+/** What the other pages say, and why the service refuses what is done there. */
+export async function loadOtherWords(): Promise<void> {
+  const [refusals] = await Promise.all([wordsIn("refusals"), load("console")]);
+  takeClauses(refusals);
 }
 
 async function load(file: string): Promise<void> {

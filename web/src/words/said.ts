@@ -7,13 +7,28 @@ const REMEMBERED = 2_000;
 
 const texts = new Map<string, string>();
 const wordings = new Map<string, readonly WordedSentence[]>();
-let patterns: readonly { pattern: RegExp; text: string }[] = [];
+let patterns: readonly Pattern[] = [];
+
+interface Pattern {
+  key: string;
+  pattern: RegExp;
+  text: string;
+}
 
 /** Take over `sentences` by their English text with fields, and `clauses`, which are also known filled in. */
 export function takeSentences(sentences: Words, clauses: Words): void {
   texts.clear();
-  for (const [key, text] of Object.entries({ ...sentences, ...clauses })) texts.set(key, String(text));
-  patterns = Object.entries(clauses).map(([key, text]) => ({ pattern: patternOf(key), text: String(text) }));
+  for (const [key, text] of Object.entries(sentences)) texts.set(key, String(text));
+  patterns = [];
+  takeClauses(clauses);
+}
+
+/** Take over more clauses: what was there before is looked for first. */
+export function takeClauses(clauses: Words): void {
+  const known = new Set(patterns.map(({ key }) => key));
+  const more = Object.entries(clauses).filter(([key]) => !known.has(key));
+  for (const [key, text] of more) texts.set(key, String(text));
+  patterns = [...patterns, ...more.map(([key, text]) => ({ key, pattern: patternOf(key), text: String(text) }))];
 }
 
 /** Remember what texts are made of; what was not heard of for long is forgotten. */
@@ -44,7 +59,7 @@ export function said(text: string): string {
 
 /** Why something could not be done, in the reader's language where it is in that. */
 export function whyNotDone(error: unknown): string {
-  return said((error as Error).message);
+  return (error as Error).message.split("\n").map(said).join("\n");
 }
 
 /** A text put together of sentences; null where one of them is only there in English. */
