@@ -4,6 +4,8 @@ from math import lgamma, log, log1p, pi
 
 from mend.localization.enml.parameters import EnmlParameters
 
+_LEAST_SPREAD = 0.05
+"""Where nothing ever changes a little does: points are few."""
 _FIRST_SCANS = 8.0
 """What the parameters say of it counts for so many scans."""
 
@@ -25,10 +27,13 @@ class UsualChange:
 
     def learn(self, change: float, weight: float) -> None:
         """Take in one more change, as `weight` (0 to 1) scans of which it is known."""
-        self._scans = self._scans * (1.0 - 1.0 / self._parameters.usual_scans) + weight
+        if weight <= 0.0:
+            return
+        self._scans = self._scans * (1.0 - weight / self._parameters.usual_scans) + weight
         part = weight / self._scans
         off = change - self._mean
-        self._variance = (1.0 - part) * (self._variance + part * off**2)
+        variance = (1.0 - part) * (self._variance + part * off**2)
+        self._variance = max(variance, _LEAST_SPREAD**2)
         self._mean += part * off
 
     def log_density(self, change: float) -> float:
