@@ -144,7 +144,7 @@ class EnmlLocalizer:
         self._probation_m -= moved_m
         self._weigh_place()
         if self._is_lost or self._probation_m > 0.0:
-            covariance = self._look_for_place(moved_m, covariance)
+            covariance = self._look_for_place(covariance)
         self._search_at_once = False
         return self._estimate(covariance)
 
@@ -258,7 +258,7 @@ class EnmlLocalizer:
             track.advance(np.zeros(3), *self._seen)
         return track
 
-    def _look_for_place(self, moved_m: float, covariance: Floats) -> Floats:
+    def _look_for_place(self, covariance: Floats) -> Floats:
         """Search the map every so often; take the episode to where it clearly belongs."""
         track, recovery = self._track, self._recovery
         at_once = self._search_at_once
@@ -270,7 +270,7 @@ class EnmlLocalizer:
                 self._unplaced.episode, followed, self._since_lost_m, drifted=self._drifted
             )
         searches = recovery.is_searching
-        found = recovery.go_on(moved_m, to_its_end=at_once)
+        found = recovery.go_on(to_its_end=at_once)
         if self._is_in_doubt and searches and not recovery.is_searching and found is None:
             self._is_in_doubt = False
             if not recovery.suspects_elsewhere:

@@ -38,11 +38,10 @@ _SCANS_POLISHED = 3
 _SCANS_WEIGHED = 6
 _LEAST_DOUBT = 0.5
 """The share of the lead that is always needed, and all that is where the robot is followed."""
-_PIECES_PER_M = 20.0
-_FEWEST_PIECES, _MOST_PIECES = 10, 16
-"""So many pieces of work an update does: more where updates are farther apart."""
+_PIECES = 8
+"""So many pieces of work an update does..."""
 _RAYS_PER_PIECE_M = 850_000.0
-"""So many metres of rays over the map are a piece of work, two or three milliseconds..."""
+"""... of so many metres of rays over the map, two or three milliseconds..."""
 _RAY_BEGINS_M = 20.0
 """... and a ray takes as long as if it were so much longer (ours: on 12 maps)."""
 
@@ -136,14 +135,12 @@ class Recovery:
         self.stop()
         self._work = self._search(_Evidence.of(episode, followed, path_m, drifted))
 
-    def go_on(self, moved_m: float, *, to_its_end: bool = False) -> Found | None:
+    def go_on(self, *, to_its_end: bool = False) -> Found | None:
         """Do what fits into one update; at the search's end where the robot is, if that is clear.
 
-        `moved_m` is how far the robot has driven since the update before. Nothing where no search
-        goes on.
+        Nothing where no search goes on.
         """
-        some = int(np.clip(_PIECES_PER_M * moved_m, _FEWEST_PIECES, _MOST_PIECES))
-        for _ in count() if to_its_end else range(some):
+        for _ in count() if to_its_end else range(_PIECES):
             if self._work is None:
                 break
             try:
@@ -181,7 +178,7 @@ class Recovery:
         """The places of the lattice that look right, each where what is seen fits best."""
         wide = yield from self._lattice.candidates(seen.points, self._everywhere, _CANDIDATES)
         merits = np.zeros(len(wide))
-        for piece in self._portions(wide, seen.glance):
+        for piece in self._portions(wide, seen.glance, 2):
             glances(self._grid, seen.glance, wide[piece], merits[piece])
             yield
         places = wide[np.argsort(-merits, kind="stable")[:_CLIMBERS]]
