@@ -1,12 +1,15 @@
 """Texts that know what they were made of, so that they can be said in other languages too."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Self
 
 _APART = re.compile(r"(?<=[.!?]) |(?<=[.!?])(?=\{why\})|(?<=\{why\}) ")
 """Between two sentences; `why` is one of its own, with a blank before it, or nothing."""
+_MOST_TEXTS = 1024
+"""More than all scripts have: each is said again and again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +56,13 @@ def joined(*texts: str) -> Worded:
 
 def filled_in(text: str, args: Mapping[str, str]) -> Worded:
     """A text of several sentences with its fields filled in."""
-    pieces = _APART.split(text)
-    sentences = [each for piece in pieces for each in _filled_in(piece, args)]
+    sentences = [each for piece in _pieces(text) for each in _filled_in(piece, args)]
     return Worded(text.format(**args), tuple(sentences))
+
+
+@lru_cache(_MOST_TEXTS)
+def _pieces(text: str) -> Sequence[str]:
+    return tuple(_APART.split(text))
 
 
 def _filled_in(piece: str, args: Mapping[str, str]) -> tuple[Sentence, ...]:

@@ -1,6 +1,9 @@
 """How a script's sentences are filled in, so that a busy person can take them in by ear."""
 
 import re
+from collections.abc import Callable, Collection, Mapping
+from functools import lru_cache, partial
+from itertools import zip_longest
 from string import Formatter
 
 from mend.dialogue.outlook import Outlook
@@ -43,6 +46,9 @@ no object.
 does next after help, after a failed attempt, and if it need not begin anew. `guess_1` to
 `guess_3`: where a lost robot may be (`at 101`), or nothing where it has not as many guesses."""
 
+_MOST_SENTENCES = 1024
+"""More than all scripts have: each is said again and again."""
+
 _AT_HAND_M = 5.0
 """Whoever stands no farther off is in plain sight,"""
 _ROUNDED_M = 5.0
@@ -54,30 +60,39 @@ def word(text: str, issue: Issue, outlook: Outlook, *, named: bool = False) -> W
 
     `named`: the object was named just before.
     """
-    it = worded("it") if named else the(issue.object or issue.item or issue.name)
-    args: dict[str, str] = dict.fromkeys(_GUESSES, "")
-    args.update(zip(_GUESSES, map(_where, issue.guesses), strict=False))
-    args.update(
-        item=spoken(issue.item or issue.name),
-        it=it,
-        put_in=_put_in(issue),
-        fetch=_fetch(issue, it),
-        message=issue.message or "",
-        person=issue.person or worded("somebody"),
-        doing=_doing(issue),
-        object=spoken(issue.object or issue.item or issue.name),
-        with_object=worded(" with {it}", it=the(issue.object)) if issue.object else "",
-        place=spoken(issue.place or issue.name),
-        name=spoken(issue.name),
-        robot=called(issue.robot),
-        why=_why(issue),
-        attempt=outlook.attempt_spoken,
-        times=outlook.times_spoken,
-        again=outlook.after_help(),
-        later=outlook.if_it_fails(),
-        go_on=outlook.going_on(),
-    )
-    return filled_in(text, args)
+    used = _fields_of(text)
+    words = _words(issue, outlook, named=named)
+    return filled_in(text, {name: words[name]() for name in words if name in used})
+
+
+def _words(issue: Issue, outlook: Outlook, *, named: bool) -> Mapping[str, Callable[[], str]]:
+    """What each field is filled in with, made where a sentence has that field."""
+
+    def it() -> Worded:
+        return worded("it") if named else the(issue.object or issue.item or issue.name)
+
+    guesses = dict(zip_longest(_GUESSES, issue.guesses[: len(_GUESSES)]))
+    return {
+        **{name: partial(_where, guess or "") for name, guess in guesses.items()},
+        "item": lambda: spoken(issue.item or issue.name),
+        "it": it,
+        "put_in": lambda: _put_in(issue),
+        "fetch": lambda: _fetch(issue, it()),
+        "message": lambda: issue.message or "",
+        "person": lambda: issue.person or worded("somebody"),
+        "doing": lambda: _doing(issue),
+        "object": lambda: spoken(issue.object or issue.item or issue.name),
+        "with_object": lambda: worded(" with {it}", it=the(issue.object)) if issue.object else "",
+        "place": lambda: spoken(issue.place or issue.name),
+        "name": lambda: spoken(issue.name),
+        "robot": lambda: called(issue.robot),
+        "why": lambda: _why(issue),
+        "attempt": lambda: outlook.attempt_spoken,
+        "times": lambda: outlook.times_spoken,
+        "again": outlook.after_help,
+        "later": outlook.if_it_fails,
+        "go_on": outlook.going_on,
+    }
 
 
 def _doing(issue: Issue) -> Worded:
@@ -143,13 +158,18 @@ def sentence(clause: str) -> Worded:
     return worded("{clause}.", clause=whole).capitalized()
 
 
+@lru_cache(_MOST_SENTENCES)
+def _fields_of(text: str) -> Collection[str]:
+    """The fields of a sentence of a script."""
+    return tuple(field for _, field, _, _ in Formatter().parse(text) if field is not None)
+
+
 def unknown_fields(text: str) -> list[str]:
     """The fields of a sentence that `word` cannot fill in.
 
     Raises `ValueError` when its braces do not match.
     """
-    fields = [field for _, field, _, _ in Formatter().parse(text) if field is not None]
-    return [field for field in fields if field not in FIELDS]
+    return [field for field in _fields_of(text) if field not in FIELDS]
 
 
 def _why(issue: Issue) -> Worded | str:
