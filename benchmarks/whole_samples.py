@@ -13,11 +13,14 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 from sampled import EVERYTHING
 
 ROOT = Path(__file__).parents[1]
-SAMPLING = ("from sampled import", "from forked_mend import")
+SAMPLING = ("from sampled import", "from forked_mend import", "from hypothesis import")
 
 
 def sampled_files() -> list[str]:
-    """The test files of which any test is a sample, or has forks where a user has processes."""
+    """The test files of which any test is a sample, or has forks where a user has processes.
+
+    Properties are samples unless they say how many examples they need.
+    """
     tests = [(str(each), each.read_text("utf-8")) for each in (ROOT / "tests").rglob("test_*.py")]
     return sorted(file for file, text in tests if any(each in text for each in SAMPLING))
 
