@@ -80,7 +80,7 @@ async def start_mend(
         return await asyncio.create_subprocess_exec(
             MEND, *arguments,
             env=env, stdin=asyncio.subprocess.DEVNULL, stdout=stdout, stderr=stderr,
-            preexec_fn=lambda: _bound(descriptors),
+            preexec_fn=None if descriptors is None else lambda: _bound(descriptors),
         )  # fmt: skip
     given = (_Given(stdout), _Given(stderr))
     process = FORKS.Process(target=_be_mend, args=(arguments, dict(env), given, descriptors))

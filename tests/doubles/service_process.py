@@ -101,10 +101,9 @@ class ServiceProcess:
                 )
                 return
             self._process = await asyncio.create_subprocess_exec(
-                *self._program,
-                env=environment, stdout=nowhere, stderr=complaints,
-                preexec_fn=self._bound,
-            )  # fmt: skip
+                *self._program, env=environment, stdout=nowhere, stderr=complaints
+            )
+            self._bound()
 
     @contextmanager
     def _outputs(self) -> Iterator[tuple[int, int]]:
@@ -114,9 +113,13 @@ class ServiceProcess:
             yield nowhere.fileno(), complaints.fileno()
 
     def _bound(self) -> None:
-        """In the new process: it may have only so many descriptors."""
+        """It may have only so many descriptors.
+
+        Said from here: to say it in the new process all of this one would be copied first.
+        """
         if self._descriptors is not None:
-            resource.setrlimit(resource.RLIMIT_NOFILE, (self._descriptors, self._descriptors))
+            most = (self._descriptors, self._descriptors)
+            resource.prlimit(self.process.pid, resource.RLIMIT_NOFILE, most)
 
     async def kill(self) -> None:
         """`kill -9`; returns when it is gone, and its robots with it."""
