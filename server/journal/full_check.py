@@ -79,7 +79,8 @@ class _Check:
     def _find(self, sentence: str, runs: Iterable[str | None] = ()) -> None:
         # A damaged row may have no text where its run should be.
         named = frozenset(run for run in runs if isinstance(run, str))
-        finding = Finding(sentence, named)
+        # What SQLite says may have the text of a table in it, on several lines.
+        finding = Finding(" ".join(sentence.split()), named)
         if finding not in self._check.findings:
             self._check.findings.append(finding)
 
@@ -102,7 +103,7 @@ class _Check:
         found = self._connection.execute(f"PRAGMA integrity_check({MOST_PAGE_FINDINGS})")
         for (text,) in found:
             if text != "ok":
-                self._find(f"SQLite's own check: {' '.join(str(text).split())}")
+                self._find(f"SQLite's own check: {text}")
 
     def _chain(self) -> None:
         for each in breaks(self._connection):

@@ -221,6 +221,18 @@ def flipped(whole: Path, folder: Path, flips: list[tuple[float, int]]) -> Path:
     return path
 
 
+def test_what_sqlite_says_on_several_lines_is_one_sentence(journal: Path) -> None:
+    with closing(sqlite3.connect(journal)) as connection, connection:
+        connection.execute("PRAGMA writable_schema = ON")
+        connection.execute(
+            "UPDATE sqlite_master SET sql = 'CREATE TABLE ' || name || ' (\"a\n TEXT)' "
+            "WHERE type = 'table'"
+        )
+    (finding,) = checked(journal).findings
+    assert finding.sentence.startswith("the file is not a journal, or nothing of it can be read")
+    assert "\n" not in finding.sentence
+
+
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 @given(flips=FLIPS)
 def test_a_check_of_flipped_bits_ends_in_sentences(
