@@ -9,6 +9,7 @@ from dropping_channel import DroppingChannel
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from recording_sink import RecordingSink
+from sampled import sample
 
 from mend.robots.link.channel import Channel, memory_channel
 from mend.robots.link.client import LinkSettings, run_agent
@@ -27,7 +28,9 @@ drops = st.lists(
 
 
 @settings(
-    deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    deadline=None,
+    max_examples=sample(20, 60),
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 @given(drops=drops, simulated=st.booleans())
 def test_reports_are_committed_once_and_in_order_and_commands_done_once(

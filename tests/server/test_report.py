@@ -13,6 +13,7 @@ from uuid import UUID
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.server.journal import events as ev
 from mend.server.report.page import render_report, write_report
@@ -242,7 +243,7 @@ def timeline_events(times: Sequence[float]) -> list[ev.Event]:
     return events
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=sample(20, 60))
 @given(st.lists(st.floats(0.0, 5000.0), min_size=1, max_size=12))
 def test_nothing_on_the_timeline_leaves_it_or_hides_other_words(times: list[float]) -> None:
     timeline = lay_out_timeline(RunRecord(timeline_events(times)))

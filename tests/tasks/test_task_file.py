@@ -10,8 +10,9 @@ from sampled import sample
 from trees import BEHAVIORS
 
 from mend.documents.problem import InvalidFileError
+from mend.tasks import nested_form
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
-from mend.tasks.draft import MAX_NODE_DEPTH
+from mend.tasks.draft import MAX_NODE_DEPTH, MAX_NODES
 from mend.tasks.library import SCENES, TREES, NotInLibraryError, Shelf
 from mend.tasks.scene_file import built_in_scene
 from mend.tasks.task_file import CheckedTask, check_built_in_task, check_task_file, check_task_text
@@ -212,16 +213,20 @@ def test_a_deep_tree_is_read_and_one_beyond_the_limit_refused_without_recursion(
 
 
 @pytest.mark.slow(3)
-def test_very_many_nodes_are_read_and_beyond_the_limit_refused() -> None:
+def test_very_many_nodes_are_read_and_beyond_the_limit_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     count = sample(2_000, 100_000)
+    most = sample(5_000, MAX_NODES)
+    monkeypatch.setattr(nested_form, "MAX_NODES", most)
     leaves = [
         {"behavior": "pick_and_place", "object": f"a{number}", "place": f"b{number}"}
         for number in range(count)
     ]
     text = json.dumps({"name": "t", "tree": {"and": leaves}})
     assert len(check(text).definition.nodes) == count + 1
-    text = json.dumps({"name": "t", "tree": {"and": [{"and": []}] * 200_000}})
-    assert (1, None, "the tree has more than 200000 nodes") in problems(text)
+    text = json.dumps({"name": "t", "tree": {"and": [{"and": []}] * most}})
+    assert (1, None, f"the tree has more than {most} nodes") in problems(text)
 
 
 @settings(max_examples=100, deadline=None)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.fleet.right_of_way.right_of_way import (
     AGAIN_S,
@@ -165,7 +166,7 @@ def test_what_does_not_help_time_and_again_is_left_to_people() -> None:
     assert rights.decide(MET, now_s + FORGET_S) is not None
 
 
-@settings(max_examples=40)
+@settings(max_examples=sample(13, 40))
 @given(st.integers(0, 10_000), st.integers(4, 12), st.floats(0.6, 1.6), st.data())
 def test_a_bay_is_clear_of_walls_and_of_the_way_that_is_made(
     seed: int, rooms: int, off_m: float, data: st.DataObject

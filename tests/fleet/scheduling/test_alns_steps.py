@@ -7,6 +7,7 @@ import pytest
 from delivery_problems import corridor, corridor_items, parcel
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.fleet.scheduling.alns.annealing import take_step
 from mend.fleet.scheduling.alns.itineraries import (
@@ -97,7 +98,7 @@ def require_honest(problem: Problem, arrays: ProblemArrays, plan: Plan, value: f
 
 
 @given(problems(), seeds)
-@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, max_examples=sample(20, 60), suppress_health_check=[HealthCheck.too_slow])
 def test_every_accepted_step_is_valid_and_costs_what_it_says(problem: Problem, seed: int) -> None:
     arrays = problem_arrays(problem, CHAIN)
     state, rng = state_for(arrays), rng_from(np.random.default_rng(seed))
@@ -136,7 +137,7 @@ def test_nor_is_there_one_where_others_may_hand_things_over(seed: int) -> None:
 
 
 @given(problems(), seeds, st.integers(5, 80).map(float))
-@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, max_examples=sample(13, 40), suppress_health_check=[HealthCheck.too_slow])
 def test_steps_around_doors_are_valid_and_cost_what_they_say(
     problem: Problem, seed: int, opens_s: float
 ) -> None:

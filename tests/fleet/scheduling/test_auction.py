@@ -6,6 +6,7 @@ import pytest
 from delivery_problems import corridor, corridor_items, parcel
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.fleet.scheduling.auction import sell
 from mend.fleet.scheduling.growing_routes import GrowingRoutes
@@ -86,7 +87,7 @@ URGENT = Window(19.0, 63.0)
     transfers=Transfers((1, 2, 3), together=True),
     weights=Weights(0.5, 0.0, 1.0, 1.0, 30.0),
 )
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=sample(13, 40))
 def test_what_is_sold_is_never_worse_than_without_transfers(
     items: tuple[Item, ...], transfers: Transfers, weights: Weights
 ) -> None:

@@ -68,7 +68,7 @@ def _cost(problem: Problem, routes: tuple[Route, ...]) -> float | None:
 @given(corridor_items())
 @settings(
     deadline=None,
-    max_examples=12,
+    max_examples=sample(5, 12),
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 def test_optimum_equals_that_of_plain_enumeration(items: tuple[Item, ...]) -> None:

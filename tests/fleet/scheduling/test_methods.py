@@ -169,7 +169,7 @@ def test_exact_is_not_offered_where_doors_close() -> None:
 
 
 @given(items=corridor_items(), seed=st.integers(0, 99))
-@settings(deadline=None, max_examples=12)
+@settings(deadline=None, max_examples=sample(5, 12))
 def test_search_around_doors_is_valid_and_no_worse_than_insertion(
     items: tuple[Item, ...], seed: int
 ) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.maps.building.building import Building, BuildingDocument, Caller, FloorPlace, PlaceKind
 from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of
@@ -250,7 +251,7 @@ def rings(seed: int) -> tuple[Building, FloorWays]:
     return building, FloorWays(building, Frame(), 1.0, 0.3)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=sample(8, 25), deadline=None)
 @given(seed=st.integers(0, 6), data=st.data())
 def test_what_is_closed_is_gone_by_only_where_no_other_way_leads(
     seed: int, data: st.DataObject

@@ -8,6 +8,7 @@ from broken_camera import with_noise, without_color
 from drawn_scene import DrawnScene, Resting
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.robots.body import CameraImage
 from mend.robots.vision.blindness import (
@@ -72,7 +73,7 @@ def test_a_picture_of_long_ago_tells_nothing_of_now() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1), noise_m=st.floats(1e-4, 0.3))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=sample(10, 30), deadline=None)
 def test_the_noise_of_depth_is_measured_whatever_stands_there(seed: int, noise_m: float) -> None:
     noisy = with_noise(FULL.picture(), noise_m, np.random.default_rng(seed))
     clear = depth_noise_m(FULL.picture(), TABLE)

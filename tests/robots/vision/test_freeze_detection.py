@@ -8,6 +8,7 @@ from broken_camera import with_noise
 from drawn_scene import DrawnScene, Resting
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.robots.body import CameraImage
 from mend.robots.vision.freeze_detection import FreezeDetector
@@ -56,7 +57,7 @@ def test_a_camera_without_noise_may_give_the_same_picture_of_the_same() -> None:
 
 
 @given(gains=st.lists(st.floats(0.9, 1.1), min_size=2, max_size=6))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=sample(10, 30), deadline=None)
 def test_light_that_flickers_and_comes_back_is_no_noise(gains: list[float]) -> None:
     lit = [replace(SCENE, light=gain).picture() for gain in gains]
     assert told(*lit, lit[-1], STILL, STILL) == [False] * (len(lit) + 3)

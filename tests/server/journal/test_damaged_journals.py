@@ -14,6 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from made_up_history import made_up_run, run_id, write_history
 from pretend_service import pretend_service
+from sampled import sample
 from task_documents import definition_of
 from typer.testing import CliRunner
 
@@ -233,7 +234,7 @@ def test_what_sqlite_says_on_several_lines_is_one_sentence(journal: Path) -> Non
     assert "\n" not in finding.sentence
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=sample(20, 60), deadline=None, suppress_health_check=list(HealthCheck))
 @given(flips=FLIPS)
 def test_a_check_of_flipped_bits_ends_in_sentences(
     whole: Path, tmp_path_factory: pytest.TempPathFactory, flips: list[tuple[float, int]]
@@ -243,7 +244,7 @@ def test_a_check_of_flipped_bits_ends_in_sentences(
         assert "\n" not in finding.sentence
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=sample(13, 40), deadline=None, suppress_health_check=list(HealthCheck))
 @given(flips=FLIPS)
 def test_a_service_on_flipped_bits_starts_or_says_why_not(
     whole: Path, tmp_path_factory: pytest.TempPathFactory, flips: list[tuple[float, int]]

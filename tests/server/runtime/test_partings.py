@@ -6,6 +6,7 @@ import numpy as np
 from full_evaluation import Node, define, trees
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.server.runtime.parting import Parting
 from mend.tasks.definition import NodeKind
@@ -31,7 +32,7 @@ def _exclude(tree: TaskTree, one: int, other: int) -> bool:
     return tree.kind_of(_lowest_over(tree, one, other)) is NodeKind.OR
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=sample(50, 150), deadline=None)
 @given(root=trees(), data=st.data())
 def test_partings_are_those_of_each_pair(root: Node, data: st.DataObject) -> None:
     tree = TaskTree(define(root))

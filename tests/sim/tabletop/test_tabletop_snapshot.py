@@ -5,6 +5,7 @@ import json
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 from tabletop_hands import Hands
 
 from mend.sim.tabletop.layout import lay_out
@@ -31,7 +32,7 @@ interventions = st.one_of(
 
 
 @given(happens=st.lists(st.tuples(interventions, st.integers(0, 30)), max_size=12))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=sample(20, 60), deadline=None)
 def test_a_rebuilt_world_is_in_the_state_of_its_snapshot(
     happens: list[tuple[Intervention, int]],
 ) -> None:

@@ -6,6 +6,7 @@ import pytest
 from delivery_problems import corridor, parcel
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.fleet.scheduling.problem import Item, Robot, Transfers, Visit
 from mend.fleet.scheduling.replanning.events import (
@@ -245,7 +246,7 @@ ACTS = ("set_out", "do", "give_up", "fail", "back")
         ("right", "set_out", "a"),
     ],
 )
-@settings(deadline=None, max_examples=150, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, max_examples=sample(50, 150), suppress_health_check=[HealthCheck.too_slow])
 def test_nothing_is_lost_or_brought_twice_whoever_fails_and_comes_back(
     ways: list[tuple[int, int]], acts: list[tuple[str, str, str]]
 ) -> None:

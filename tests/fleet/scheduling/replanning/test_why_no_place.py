@@ -10,6 +10,7 @@ import pytest
 from delivery_problems import corridor, drawn_problem, parcel
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.fleet.scheduling import no_place
 from mend.fleet.scheduling.auction import sell
@@ -60,7 +61,7 @@ def with_item_last(problem: Problem, routes: Sequence[Route], robot: int, item: 
 
 
 @given(st.integers(0, 10_000), st.booleans())
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=sample(20, 60))
 def test_item_has_a_conflict_where_it_breaks_some_robots_longer_route(
     seed: int, doors: bool
 ) -> None:
@@ -96,7 +97,7 @@ def test_bid_is_made_again_once_who_shares_a_transfer_has_more_to_do(
 
 @pytest.mark.slow(seconds=3)
 @given(st.integers(0, 10_000), st.booleans())
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=sample(13, 40))
 def test_what_a_trial_adds_is_timed_like_the_longer_routes_and_taken_back(
     seed: int, doors: bool
 ) -> None:

@@ -7,6 +7,7 @@ import pytest
 from drawn_scene import PARTS, DrawnScene
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 from scripted_body import GRIPPER, forearm_pose, part_in_tool, tool_matrix, trained_model
 
 from mend.robots.arm.body import ToolPose
@@ -247,7 +248,7 @@ def test_one_bad_picture_loses_nothing() -> None:
     assert state is GripState.HELD
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=sample(10, 30))
 @given(
     name=st.sampled_from(sorted(PARTS)),
     poses=st.lists(

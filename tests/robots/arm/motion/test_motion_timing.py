@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.robots.arm.motion.curve import JointCurve
 from mend.robots.arm.motion.limits import MotionLimits
@@ -78,7 +79,7 @@ def test_the_tool_keeps_its_limit_on_a_straight_line() -> None:
     assert 0.3 < fastest <= LIMITS.tool_velocity_m_s + 1e-6
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=sample(6, 20), deadline=None)
 @given(changes=st.lists(st.tuples(st.integers(0, 200), st.floats(0.05, 1.0)), max_size=5))
 def test_a_changed_speed_never_leaves_the_curve_nor_turns_back(
     changes: list[tuple[int, float]],

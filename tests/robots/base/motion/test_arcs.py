@@ -3,6 +3,7 @@
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sampled import sample
 
 from mend.robots.base.motion.arcs import measure_room
 
@@ -21,7 +22,7 @@ def sampled_room_m(points, needs_m, velocity, time_s) -> float:
     return float(min(AMPLE_M, (away_m - needs_m).min()))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=sample(66, 200), deadline=None)
 @given(
     seed=st.integers(0, 2**32 - 1),
     forward=st.floats(-1.0, 1.0),
