@@ -5,6 +5,7 @@ import { Confirming } from "./confirming";
 import { InWords } from "./in_words";
 import { byFloor, placeMeant, said } from "./places";
 import { Refused } from "./refused";
+import { Unanswered } from "./unanswered";
 import type { RequestDocument, UseAsking } from "./use_asking";
 import { type Kind, missing, newName, NO_WISH, requestOf, type Wish } from "./wish";
 import type { SiteClock } from "./when";
@@ -31,9 +32,10 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
   const fill = (change: Partial<Wish>) => {
     setWish({ ...wish, ...change });
     setMistake("");
-    if (asking.phase === "refused") forget();
+    if (asking.phase === "refused" || asking.phase === "unknown") forget();
   };
   const send = async () => {
+    if (asking.phase === "unknown") return ask(asking.request);
     const wanted = withPlaces(wish, fleet.places);
     const wrong = missing(wanted.wish, fleet.now_s) || wanted.mistake;
     setMistake(wrong);
@@ -140,6 +142,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
           </button>
         </div>
       </form>
+      <Unanswered asking={asking} ask={(request) => void ask(request)} />
       {asking.phase === "refused" && <Refused refused={asking} clock={clock} ask={(request) => void ask(request)} />}
     </section>
   );

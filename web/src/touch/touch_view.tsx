@@ -6,6 +6,7 @@ import { Confirming } from "../requests/confirming";
 import { Followed } from "../requests/followed";
 import { InWords } from "../requests/in_words";
 import { Refused, refusedInShort } from "../requests/refused";
+import { notKnown, Unanswered } from "../requests/unanswered";
 import { fleets } from "../requests/fleets";
 import { said } from "../requests/places";
 import { type Asking, followed, type RequestDocument, useAsking } from "../requests/use_asking";
@@ -75,7 +76,8 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
   };
   const booked = followed(asking, requests);
   const goesOn = booked !== null && !isOver(booked);
-  useIdle((asked !== null || confirmed !== null) && !goesOn, IDLE_MS, back);
+  const isSending = asking.phase === "sending";
+  useIdle((asked !== null || confirmed !== null) && !goesOn && !isSending, IDLE_MS, back);
   useSaidAloud(heard(asking, confirmed?.readBack ?? ""));
   if (fleet === null) return <p class="quiet">{t("Loading …")}</p>;
   const clock = { now: fleet.now_s, speed: site.speed };
@@ -102,17 +104,18 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
       {asked !== null && confirmed === null && (
         <StepForm asked={asked} places={fleet.places} here={robot.here} answered={answer} />
       )}
-      {confirmed !== null && (asking.phase === "nothing" || asking.phase === "sending") && (
+      {confirmed !== null && (asking.phase === "nothing" || isSending) && (
         <Confirming
           readBack={confirmed.readBack}
-          busy={asking.phase === "sending"}
+          busy={isSending}
           yes={() => void ask(confirmed.request).then(again)}
           no={back}
         />
       )}
+      <Unanswered asking={asking} ask={(request) => void ask(request).then(again)} />
       {asking.phase === "refused" && <Refused refused={asking} clock={clock} ask={(request) => void ask(request).then(again)} />}
       {booked !== null && <Followed request={booked} clock={clock} changed={again} />}
-      {!isStart && !(confirmed !== null && asking.phase === "nothing") && (
+      {!isStart && !isSending && !(confirmed !== null && asking.phase === "nothing") && (
         <button class="button touch-button" type="button" onClick={back}>
           {asking.phase === "booked" ? t("Ask for something else") : t("Start over")}
         </button>
@@ -149,6 +152,7 @@ function Start({ robot, service, choose }: StartProps) {
 
 function heard(asking: Asking, readBack: string): string {
   if (asking.phase === "booked") return t("All right. {request}.", { request: wanted(asking.request, said) });
+  if (asking.phase === "unknown") return notKnown();
   return asking.phase === "refused" ? refusedInShort(asking.by) : readBack;
 }
 
