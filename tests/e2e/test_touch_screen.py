@@ -213,6 +213,25 @@ async def test_what_is_not_known_to_be_booked_is_said_so_and_asked_for_once_more
     assert len(await service.fleets.requests(None)) == 1
 
 
+async def test_who_has_asked_is_told_that_the_robot_waits_for_somebody(
+    service: Service, open_page: OpenPage
+) -> None:
+    site = await open_office_with_fleet(service, 20.0, answers="live")
+    page = await open_page(f"/robots/{await robot_of(service, site)}/ask")
+    await page.get_by_label("Say it in words").fill(
+        "bring the tea from 103 to 106", timeout=LONG_MS
+    )
+    await press(page, "Say it")
+    await press(page, "Yes, that is right")
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("I wait for somebody to help me:", timeout=LONG_MS)
+    await expect(mine).to_contain_text("Put the tea")
+    await expect(mine).to_contain_text("at the earliest")
+    page = await open_page("/requests")
+    row = page.get_by_role("list", name="Open requests")
+    await expect(row).to_contain_text("waits for somebody to help: Put the tea")
+
+
 async def test_every_button_is_large(screen: Screen) -> None:
     page = await screen.begin()
     await press(page, "Come to a room")

@@ -1,14 +1,15 @@
 // What is said of requests, and what a filled-in form asks for.
 import { describe, expect, it } from "vitest";
 import { expectation, isOver, wanted, within } from "../src/requests/request_words";
+import { soon } from "../src/requests/followed";
 import { missing, NO_WISH, requestOf, type Wish } from "../src/requests/wish";
 import type { RequestStatus, RequestView } from "../src/wire/types";
 
 const MAIL: Wish = { ...NO_WISH, what: " the mail ", origin: "F1/101", destination: "F2/203" };
 
 function request(what: object, status: RequestStatus = "booked", done = 300): RequestView {
-  const expected = { robot: "robot1", place: "F1/101", begins_s: 0, done_s: done };
-  return { name: "r", site: "s", what: { ...what }, status, reason: null, expected } as RequestView;
+  const expected = { robot: "robot1", place: "F1/101", begins_s: 0, done_s: done, late_s: 0 };
+  return { name: "r", site: "s", what: { ...what }, status, reason: null, expected, waits: null } as RequestView;
 }
 
 describe("words of requests", () => {
@@ -27,6 +28,21 @@ describe("words of requests", () => {
     expect(expectation(request(going, "under_way"), 290)).toBe("robot1, done in less than a minute");
     expect(expectation(request(going, "done"), 60)).toBe("");
     expect(isOver(request(going, "failed"))).toBe(true);
+  });
+
+  it("say that nobody knows until when, once a robot is late or waits for people", () => {
+    const late = request({ kind: "go_to_room", place: "F1/101" }, "under_way");
+    const waits = { robot: "robot1", dialogue: "d", headline: "Can you open the door?", helper: null };
+    const earliest = "robot1, done in about 4 minutes at the earliest";
+    expect(expectation({ ...late, waits }, 60)).toBe(earliest);
+    expect(expectation({ ...late, expected: { ...late.expected!, late_s: 5 } }, 60)).toBe(earliest);
+    expect(expectation(late, 400)).toBe("robot1, done in less than a minute at the earliest");
+    expect(soon({ ...late, waits }, { now: 60, speed: "max" })).toContain("at the earliest in about 4 minutes");
+    expect(soon(late, { now: 60, speed: "max" })).toContain("be done with it in about 4 minutes");
+    expect(expectation({ ...late, status: "done", waits }, 400)).toBe("");
+  });
+
+  it("say how long that is", () => {
     expect(within(60)).toBe("in about 1 minute");
   });
 });

@@ -18,8 +18,8 @@ export function requestsAfter(events: readonly FleetEvent[]): readonly RequestVi
   for (const event of events) {
     if (event.type !== "request_changed") continue;
     const { request: name, site, what, reason, robot, done_s } = event;
-    const expected = robot === null || done_s === null ? null : { robot, place: "", begins_s: event.at_s, done_s };
-    requests.set(name, { name, site, what, status: event.status as RequestStatus, reason, expected });
+    const expected = robot === null || done_s === null ? null : { robot, place: "", begins_s: event.at_s, done_s, late_s: 0 };
+    requests.set(name, { name, site, what, status: event.status as RequestStatus, reason, expected, waits: null });
   }
   return [...requests.values()];
 }

@@ -56,7 +56,13 @@ export function wanted({ what }: RequestView, named = (place: string) => place):
 export function expectation(request: RequestView, now: number | undefined): string {
   const { expected } = request;
   if (isOver(request) || expected === null || now === undefined) return "";
-  return t("{robot}, done {within}", { robot: robotName(expected.robot), within: within(expected.done_s - now) });
+  const when = { robot: robotName(expected.robot), within: within(expected.done_s - now) };
+  return isOpenEnded(request, now) ? t("{robot}, done {within} at the earliest", when) : t("{robot}, done {within}", when);
+}
+
+/** Whether nobody can say until when: its robot is late already, or waits for people. */
+export function isOpenEnded({ expected, waits }: RequestView, now: number): boolean {
+  return waits !== null || (expected !== null && (expected.late_s > 0 || expected.done_s < now));
 }
 
 /** "in less than a minute", "in about 4 minutes" */

@@ -114,7 +114,7 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
       )}
       <Unanswered asking={asking} ask={(request) => void ask(request).then(again)} />
       {asking.phase === "refused" && <Refused refused={asking} clock={clock} ask={(request) => void ask(request).then(again)} />}
-      {booked !== null && <Followed request={booked} clock={clock} changed={again} />}
+      {booked !== null && <Followed request={booked} clock={clock} changed={again} at={robot.robot} />}
       {!isStart && !isSending && !(confirmed !== null && asking.phase === "nothing") && (
         <button class="button touch-button" type="button" onClick={back}>
           {asking.phase === "booked" ? t("Ask for something else") : t("Start over")}
