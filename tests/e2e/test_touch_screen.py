@@ -232,6 +232,35 @@ async def test_who_has_asked_is_told_that_the_robot_waits_for_somebody(
     await expect(row).to_contain_text("waits for somebody to help: Put the tea")
 
 
+async def test_a_message_is_told_with_the_marks_that_robots_say(screen: Screen) -> None:
+    page = await screen.begin()
+    await press(page, "Tell somebody something")
+    await page.get_by_label("The message, as it is to be told").fill('Say "hello" to «Zoë»')
+    await press(page, "Go on")
+    await press(page, "F1 106")
+    await expect(page.get_by_text("“Say 'hello' to 'Zoë'”. Is that right?")).to_be_visible()
+    await press(page, "Yes, that is right")
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("Tell “Say 'hello' to 'Zoë'” at F1 106")
+
+
+async def test_what_was_typed_is_kept_where_it_is_not_right_or_refused(screen: Screen) -> None:
+    page = await screen.begin()
+    await page.get_by_label("Say it in words").fill("come to 203")
+    await press(page, "Say it")
+    await press(page, "No")
+    await expect(page.get_by_label("Say it in words")).to_have_value("come to 203")
+    await press(page, "Tell somebody something")
+    message = page.get_by_label("The message, as it is to be told")
+    await message.fill("Tea is\u200b ready")
+    await press(page, "Go on")
+    await press(page, "F1 106")
+    await press(page, "Yes, that is right")
+    await expect(page.get_by_text("only characters that can be seen")).to_be_visible()
+    await press(page, "Ask for it in other words")
+    await expect(message).to_have_value("Tea is\u200b ready")
+
+
 async def test_every_button_is_large(screen: Screen) -> None:
     page = await screen.begin()
     await press(page, "Come to a room")

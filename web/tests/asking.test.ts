@@ -2,7 +2,7 @@
 import { describe, expect, it } from "vitest";
 import { byFloor, placeMeant } from "../src/requests/places";
 import { when } from "../src/requests/when";
-import { requestOf } from "../src/requests/wish";
+import { NO_WISH, requestOf } from "../src/requests/wish";
 import { followed } from "../src/requests/use_asking";
 import type { RequestView } from "../src/wire/types";
 import { type Asked, nextStep, readBackOf, wishOf } from "../src/touch/steps";
@@ -70,6 +70,13 @@ describe("at a touch screen", () => {
     [{ kind: "deliver_message", answers: ["Lunch.", "F2/203"] }, "tell F2 203 that “Lunch.”"],
   ] as const)("what is wanted is read back", (asked, said) => {
     expect(readBackOf(wishOf(asked, "F1/101"))).toBe(`I am to ${said}. Is that right?`);
+  });
+
+  it("a message is read back, and asked for, with the marks that robots say", () => {
+    const wish = wishOf({ kind: "deliver_message", answers: ['Say "hello" to «Zoë» ', "F2/203"] }, null);
+    expect(readBackOf(wish)).toBe("I am to tell F2 203 that “Say 'hello' to 'Zoë'”. Is that right?");
+    expect(requestOf(wish, 0, "ab12")).toMatchObject({ message: "Say 'hello' to 'Zoë'" });
+    expect(requestOf({ ...NO_WISH, kind: "escort", person: "„Zoë“" }, 0, "ab12")).toMatchObject({ person: "'Zoë'" });
   });
 
   it("whoever asks is shown the way from where the robot is", () => {

@@ -48,6 +48,8 @@ def asked_back(words: str, here: str | None = HERE, now_min: int | None = NOW_MI
         ("come to one oh one", "come to F1 101"),
         ("come to f two two oh three", "come to F2 203"),
         ("tell 305 that lunch is ready.", 'tell F3 305 that "lunch is ready"'),
+        ("tell 305 that Ann said «hi»", "tell F3 305 that \"Ann said 'hi'\""),
+        ("tell 305 that Ann said ‟hi”", "tell F3 305 that \"Ann said 'hi'\""),
         ("tell 305 lunch is ready", 'tell F3 305 that "lunch is ready"'),
         ("tell Ms Lee in 305 that lunch is ready", 'tell Ms Lee at F3 305 that "lunch is ready"'),
         ("let 305 know that it's two to three", 'tell F3 305 that "it\'s two to three"'),

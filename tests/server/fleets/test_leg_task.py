@@ -101,9 +101,11 @@ def test_what_no_robot_can_do_is_refused_before_it_is_booked() -> None:
     require_doable(Escort(name="e", person="Ann", origin="101", destination="102"), behaviors)
     with pytest.raises(WrongInputError, match="of the kind 'transport'"):
         require_doable(PARCEL, {})
-    quoted = DeliverMessage(name="m", place="101", message='She said "no".')
-    with pytest.raises(WrongInputError, match="no double quotation marks"):
-        require_doable(quoted, behaviors)
+    for said in ('She said "no".', "Say «no».", "„Nein“, sagt sie."):
+        require_doable(DeliverMessage(name="m", place="101", message=said), behaviors)
+    unseen = DeliverMessage(name="m", place="101", message="no\u200bthing")
+    with pytest.raises(WrongInputError, match="only characters that can be seen"):
+        require_doable(unseen, behaviors)
     long = Escort(name="e", person="A" * 101, origin="101", destination="102")
     with pytest.raises(WrongInputError, match="person"):
         require_doable(long, behaviors)

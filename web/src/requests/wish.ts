@@ -65,6 +65,11 @@ function endsMissing({ origin, destination }: Wish): string {
   return origin === destination ? t("It is there already: choose another place.") : "";
 }
 
+/** As robots say it, between quotation marks of their own: those in it are single ones. */
+export function sayable(text: string): string {
+  return text.replace(/[“”„‟«»"]/g, "'").trim();
+}
+
 /** What tells a request from others of the same words. */
 export function newName(): string {
   return crypto.randomUUID().slice(0, UNLIKE_CHARS);
@@ -76,13 +81,13 @@ export function requestOf(wish: Wish, now: number, unlike: string): Record<strin
   const name = `${wordsOf(wish)}-${unlike}`;
   switch (wish.kind) {
     case "transport":
-      return { kind: wish.kind, name, what: wish.what.trim(), origin: wish.origin, destination: wish.destination, ...latest };
+      return { kind: wish.kind, name, what: sayable(wish.what), origin: wish.origin, destination: wish.destination, ...latest };
     case "deliver_message":
-      return { kind: wish.kind, name, message: wish.message.trim(), place: wish.place, ...latest };
+      return { kind: wish.kind, name, message: sayable(wish.message), place: wish.place, ...latest };
     case "go_to_room":
       return { kind: wish.kind, name, place: wish.place, ...latest };
     case "escort":
-      return { kind: wish.kind, name, person: wish.person.trim(), origin: wish.origin, destination: wish.destination, ...latest };
+      return { kind: wish.kind, name, person: sayable(wish.person), origin: wish.origin, destination: wish.destination, ...latest };
   }
 }
 

@@ -27,6 +27,7 @@ interface WishFormProps extends UseAsking {
 export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormProps) {
   const [wish, setWish] = useState<Wish>(NO_WISH);
   const [mistake, setMistake] = useState("");
+  const [words, setWords] = useState("");
   const [inWords, setInWords] = useState<{ request: RequestDocument; readBack: string } | null>(null);
   const list = useId();
   const fill = (change: Partial<Wish>) => {
@@ -49,6 +50,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
     setSeen(booked);
     if (booked !== null) {
       setWish({ ...NO_WISH, kind: wish.kind });
+      setWords("");
       setInWords(null);
     }
   }
@@ -60,6 +62,8 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
           site={fleet.site}
           robot={null}
           example={exampleFor(fleet.places)}
+          words={words}
+          typed={setWords}
           understood={(request, readBack) => {
             forget();
             setInWords({ request, readBack });
