@@ -225,11 +225,11 @@ async def test_who_has_asked_is_told_that_the_robot_waits_for_somebody(
     await press(page, "Yes, that is right")
     mine = page.get_by_role("region", name="Your request")
     await expect(mine).to_contain_text("I wait for somebody to help me:", timeout=LONG_MS)
-    await expect(mine).to_contain_text("Put the tea")
+    await expect(mine).to_contain_text("Put the tea into my basket")
     await expect(mine).to_contain_text("at the earliest")
     page = await open_page("/requests")
     row = page.get_by_role("list", name="Open requests")
-    await expect(row).to_contain_text("waits for somebody to help: Put the tea")
+    await expect(row).to_contain_text("waits for somebody to help: Put the tea into")
 
 
 async def test_a_message_is_told_with_the_marks_that_robots_say(screen: Screen) -> None:

@@ -5,7 +5,7 @@ import { when } from "../src/requests/when";
 import { NO_WISH, requestOf } from "../src/requests/wish";
 import { followed } from "../src/requests/use_asking";
 import type { RequestView } from "../src/wire/types";
-import { type Asked, nextStep, readBackOf, wishOf } from "../src/touch/steps";
+import { type Asked, nextStep, readBackOf, textOf, wishOf } from "../src/touch/steps";
 
 const PLACES = ["F1/101", "F1/kitchen", "F1/meeting room", "F2/203", "F2/kitchen"];
 
@@ -62,6 +62,8 @@ describe("at a touch screen", () => {
     const whole: Asked = { ...asked, answers: ["this", "F1/101", "F2/203"] };
     expect(nextStep(whole)).toBe(null);
     expect(readBackOf(wishOf(whole, null))).toBe("I am to bring this from F1 101 to F2 203. Is that right?");
+    expect(requestOf(wishOf(whole, null), 0, "ab12")).toMatchObject({ name: "thing--ab12", what: "this" });
+    expect([textOf(whole), textOf({ ...whole, answers: ["tea"] })]).toEqual([null, "tea"]);
   });
 
   it.each([
@@ -83,7 +85,7 @@ describe("at a touch screen", () => {
     const wish = wishOf({ kind: "escort", answers: ["F2/203"] }, "F1/101");
     expect(requestOf(wish, 0, "ab12")).toEqual({
       kind: "escort",
-      name: "escort-ab12",
+      name: "escort--ab12",
       person: "whoever asked",
       origin: "F1/101",
       destination: "F2/203",

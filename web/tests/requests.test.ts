@@ -15,6 +15,7 @@ function request(what: object, status: RequestStatus = "booked", done = 300): Re
 describe("words of requests", () => {
   it.each([
     [{ kind: "transport", what: "mail", origin: "F1/101", destination: "F2/203" }, "Bring mail from F1/101 to F2/203"],
+    [{ kind: "transport", what: "this", origin: "F1/101", destination: "F2/203" }, "Bring this from F1/101 to F2/203"],
     [{ kind: "deliver_message", message: "Lunch.", place: "F1/101" }, "Tell “Lunch.” at F1/101"],
     [{ kind: "go_to_room", place: "F1/101" }, "Come to F1/101"],
     [{ kind: "escort", person: "Ann", origin: "hall", destination: "F1/101" }, "Show Ann the way from hall to F1/101"],
@@ -68,7 +69,7 @@ describe("a filled-in form", () => {
   it("is a request by the building's clock", () => {
     expect(requestOf({ ...MAIL, within: "5" }, 100, "ab12")).toEqual({
       kind: "transport",
-      name: "the_mail-ab12",
+      name: "the_mail--ab12",
       what: "the mail",
       origin: "F1/101",
       destination: "F2/203",
@@ -76,10 +77,10 @@ describe("a filled-in form", () => {
     });
     expect(requestOf({ ...NO_WISH, kind: "go_to_room", place: "F1/101" }, 0, "ab12")).toEqual({
       kind: "go_to_room",
-      name: "visit-ab12",
+      name: "visit--ab12",
       place: "F1/101",
     });
-    expect(requestOf({ ...MAIL, what: "3 Schlüssel" }, 0, "x")["name"]).toBe("Schl_ssel-x");
-    expect(requestOf({ ...MAIL, what: "钥匙" }, 0, "x")["name"]).toBe("thing-x");
+    expect(requestOf({ ...MAIL, what: "3 Schlüssel" }, 0, "x")["name"]).toBe("Schl_ssel--x");
+    expect(requestOf({ ...MAIL, what: "钥匙" }, 0, "x")["name"]).toBe("thing--x");
   });
 });

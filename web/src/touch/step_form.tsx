@@ -1,6 +1,6 @@
 // One thing that is asked at a robot's touch screen: a text, or a place.
 import { useEffect, useId, useRef, useState } from "preact/hooks";
-import type { Kind } from "../requests/wish";
+import { type Kind, THIS } from "../requests/wish";
 import { PlacePad } from "./place_pad";
 import { type Asked, isText, nextStep, type Step } from "./steps";
 import { t } from "../words/words";
@@ -75,7 +75,7 @@ function TextAnswer({ step, typed, answer }: TextAnswerProps) {
       }}
     >
       {step === "what" && (
-        <button class="button touch-button" type="button" onClick={() => answer("this")}>
+        <button class="button touch-button" type="button" onClick={() => answer(THIS)}>
           {t("This, which I have here")}
         </button>
       )}

@@ -1,6 +1,6 @@
 // What is asked one after the other at a robot's touch screen, and the wish that comes of it.
 import { said } from "../requests/places";
-import { type Kind, NO_WISH, sayable, type Wish } from "../requests/wish";
+import { isPointedAt, type Kind, NO_WISH, sayable, THIS, type Wish } from "../requests/wish";
 import { t } from "../words/words";
 
 export type Step = "what" | "message" | "origin" | "destination" | "place";
@@ -34,7 +34,7 @@ export function nextStep({ kind, answers }: Asked): Step | null {
 /** The words that were typed so far; null where there are none. */
 export function textOf({ kind, answers }: Asked): string | null {
   const [first] = STEPS[kind];
-  return first !== undefined && isText(first) ? (answers[0] ?? null) : null;
+  return first !== undefined && isText(first) && answers[0] !== THIS ? (answers[0] ?? null) : null;
 }
 
 /** The wish, once all is known; `here` is where the robot stands. */
@@ -53,7 +53,7 @@ function deedOf({ kind, what, message, person, origin, destination, place }: Wis
   const way = t("from {origin} to {destination}", { origin: said(origin), destination: said(destination) });
   switch (kind) {
     case "transport":
-      return t("bring {what} {way}", { what, way });
+      return isPointedAt(what) ? t("bring this {way}", { way }) : t("bring {what} {way}", { what, way });
     case "escort":
       return person === WHOEVER_ASKED
         ? t("show you the way {way}", { way })
