@@ -28,6 +28,8 @@ export interface UseAsking {
 export function useAsking(site: string): UseAsking {
   const [asking, setAsking] = useState<Asking>({ phase: "nothing" });
   const ask = async (request: RequestDocument) => {
+    // Whoever says yes twice wants it once.
+    if (asking.phase === "sending") return;
     const key = asking.phase === "unknown" && asking.request === request ? asking.key : crypto.randomUUID();
     setAsking({ phase: "sending", lost: false });
     const send = () => rest.makeRequest(site, request, key);
