@@ -13,7 +13,7 @@ from mend.fleet.requests import RequestStatus, request_of
 from mend.maps.building.building import Building, PlaceKind
 from mend.server.client import MendClient
 from mend.server.client_errors import RefusedError, UnreachableError
-from mend.server.fleets.leg_task import item_of
+from mend.server.fleets.item_names import item_of
 from mend.server.fleets.operator_requests import WayReport
 from mend.server.fleets.views import FleetView, RequestView
 from mend.tasks.intervention import Act, Intervention

@@ -23,7 +23,7 @@ from mend.fleet.requests import LegAction
 from mend.maps.building.building import Building
 from mend.robots.base.behaviors.behavior import MEETS_M
 from mend.robots.base.companion import CAUGHT_UP_M
-from mend.server.fleets.leg_task import item_of
+from mend.server.fleets.item_names import item_of
 from mend.server.fleets.place_names import PlaceNames
 from mend.sim.building.goods import MOST_ITEMS
 from mend.tasks.scene import Scene

@@ -12,12 +12,19 @@ _COUNTS = (
 )
 
 
+NAMELESS = "thing_to_be_brought"
+"""What is carried for people who have only pointed at it."""
+_NAMELESS = worded("thing to be brought")
+
+
 def spoken(identifier: str) -> str:
     """A text with identifiers as people say it: `sugar_bowl` is a sugar bowl.
 
     What only tells equal names apart is not said: `cup_of_tea--0afba7d8` is a cup of tea.
     """
     without_mark = re.sub(r"(?<=\w)--[0-9a-f]{8}\b", "", identifier)
+    if without_mark == NAMELESS:
+        return _NAMELESS
     return re.sub(r"(?<=\w)[_-](?=\w)", " ", without_mark)
 
 

@@ -11,8 +11,9 @@ from enum import StrEnum
 from math import inf
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import AfterValidator, Field, ValidationError, model_validator
 
+from mend.documents.quotation_marks import single_marks
 from mend.documents.spellings import NAME, SEEN_CHARACTERS
 from mend.documents.strict_model import StrictModel
 from mend.documents.validation import describe_mistake
@@ -24,7 +25,12 @@ LAST_S = 1e8
 """The latest moment that there is: some three years, as plans are exact to less than 1e-6 s."""
 
 RequestName = Annotated[str, Field(pattern=NAME)]
-Text = Annotated[str, Field(min_length=1, max_length=500, pattern=SEEN_CHARACTERS)]
+Text = Annotated[
+    str,
+    Field(min_length=1, max_length=500, pattern=SEEN_CHARACTERS),
+    AfterValidator(single_marks),
+]
+"""What robots say and show between quotation marks, and so has none of its own."""
 PlaceName = Annotated[str, Field(min_length=1, max_length=129, pattern=SEEN_CHARACTERS)]
 Moment = Annotated[float, Field(ge=0.0, le=LAST_S, allow_inf_nan=False)]
 Stay = Annotated[float, Field(ge=0.0, le=3600.0, allow_inf_nan=False)]

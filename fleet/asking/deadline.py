@@ -9,6 +9,8 @@ from mend.fleet.asking.number_words import in_digits
 DAY_MIN = 24 * 60
 _HALF_DAY_MIN = DAY_MIN // 2
 _BY, _WITHIN = ("by", "before"), ("within", "in")
+BEGINS = (*_BY, *_WITHIN)
+"""With these words a deadline begins."""
 _HOUR = ("hour", "hours", "h")
 _MINUTE = ("minute", "minutes", "min")
 _NAMED = {"noon": _HALF_DAY_MIN, "midday": _HALF_DAY_MIN, "midnight": 0}
@@ -96,11 +98,17 @@ def at_start(
 
 
 def _deadline(words: Sequence[str], now_min: int | None) -> Deadline | TwoTimes | None:
-    first, *rest = [each.casefold().strip(",") for each in words]
+    first, *rest = _with_clocks([each.casefold().strip(",") for each in words])
     rest = [each.replace(".", "") if each in ("a.m.", "p.m.") else each for each in rest]
     if first in _WITHIN:
         return _within(rest)
     return _by_a_day(rest, now_min) if first in _BY else None
+
+
+def _with_clocks(words: Sequence[str]) -> list[str]:
+    """ "Three o clock" and "three oclock", as recognizers write them, are three o'clock."""
+    told = " ".join(words).replace("’", "'")
+    return re.sub(r"\bo[ ']?clock\b", "o'clock", told).split(" ")
 
 
 def _within(words: Sequence[str]) -> Within | None:

@@ -3,7 +3,8 @@
 import re
 from collections.abc import Sequence
 
-_QUOTES = str.maketrans("“”„«»", '"' * 5, "")
+from mend.documents.quotation_marks import plain_marks, single_marks
+
 _BEFORE = (
     "please", "hello", "hey", "robot", "could you", "can you", "would you", "will you",
     "i want you to", "i need you to", "i would like you to", "you are to", "i am to",
@@ -14,7 +15,7 @@ _LONGEST_PHRASE = 5
 
 def words_of(text: str) -> list[str]:
     """The words of a sentence. What stands between quotation marks is one word, with its marks."""
-    plain = "".join(each if each.isprintable() else " " for each in text).translate(_QUOTES)
+    plain = plain_marks("".join(each if each.isprintable() else " " for each in text))
     words = re.findall(r'"[^"]*"|[^\s"]+', plain)
     return _without_courtesies(words)
 
@@ -53,7 +54,7 @@ def free_text(words: Sequence[str]) -> str:
     """What is said, as it is kept: without the marks of a quotation."""
     if len(words) == 1 and is_quoted(words[0]):
         return words[0].strip('"').strip()
-    return " ".join(words).replace('"', "'").strip(" ,:")
+    return single_marks(" ".join(words)).strip(" ,:")
 
 
 def quoted(text: str) -> str:

@@ -7,7 +7,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from mend.errors import WrongInputError
-from mend.fleet.asking.deadline import Deadline, TwoTimes, at_end, at_start, deadline_words
+from mend.fleet.asking.deadline import (
+    BEGINS,
+    Deadline,
+    TwoTimes,
+    at_end,
+    at_start,
+    deadline_words,
+)
 from mend.fleet.asking.sentences import free_text, is_quoted, quoted, words_of
 from mend.fleet.asking.spoken_places import NoPlace, SpokenPlaces
 from mend.fleet.requests import (
@@ -28,6 +35,10 @@ WHOEVER_ASKED = "whoever asked"
 _EXAMPLES = (
     "Say for instance “bring the mail from 101 to 305”, “come to room 203” or “tell 305 that lunch "
     "is ready”."
+)
+_BY_WHEN = (
+    "By when do you want it? I do not understand “{said}”: say for instance “by three o'clock” or "
+    "“in ten minutes”."
 )
 _MOST_WORDS = 20
 """Nobody needs more to say who is told something, and where; each costs looks at the places."""
@@ -94,7 +105,9 @@ def _ways(words: Sequence[str]) -> Iterator[_Slots]:
     """All ways in which words may be meant. Raises `_MissingError`."""
     first, second = [*(_plain(each) for each in words[:2]), "", ""][:2]
     rest = words[1:]
-    if first in ("bring", "take", "carry", "deliver", "fetch", "get"):
+    if first in ("bring", "take", "get") and second in ("me", "us") and _is_way(rest[1:]):
+        yield from _escorting(rest)
+    elif first in ("bring", "take", "carry", "deliver", "fetch", "get"):
         yield from _bringing(first, rest)
     elif first in ("tell", "let"):
         yield from _telling(first, rest)
@@ -104,8 +117,16 @@ def _ways(words: Sequence[str]) -> Iterator[_Slots]:
         yield _coming(rest)
     elif first in ("escort", "guide", "accompany", "lead", "show"):
         yield from _escorting(rest)
+    elif first in BEGINS:
+        raise _MissingError(_BY_WHEN.format(said=" ".join(words)))
     else:
         raise _MissingError(f"I did not understand that. {_EXAMPLES}")
+
+
+def _is_way(words: Sequence[str]) -> bool:
+    """Whether nothing but a way is said: it is not a thing that is to be brought then."""
+    plain = _plain_words(words)
+    return plain[:1] == ["to"] or (plain[:1] == ["from"] and "to" in plain)
 
 
 def _bringing(verb: str, words: Sequence[str]) -> Iterator[_Slots]:
@@ -258,11 +279,34 @@ def _place(
     words = " ".join(said).strip(" ,;:")
     known = places.meant(words)
     if words.casefold() not in _HERE or not isinstance(known, NoPlace):
-        return known
+        unknown = isinstance(known, NoPlace) and not known.several
+        return (_more_than_a_place(said, places, here) or known) if unknown else known
     if here is not None:
         return here
     asked = {"origin": "From where", "destination": "To where", "place": "Where"}[field]
     return NoPlace(f"{asked}? Name a room, as I do not know where you are.")
+
+
+def _more_than_a_place(
+    said: Sequence[str], places: SpokenPlaces, here: str | None
+) -> NoPlace | None:
+    """What to ask where a place is there and only what is said after it is not understood."""
+    for at in range(len(said) - 1, 0, -1):
+        word, head = _plain(said[at]), " ".join(said[:at]).strip(" ,;:")
+        if word not in (*BEGINS, "on"):
+            continue
+        rest, place = " ".join(said[at:]), places.meant(head)
+        if head.casefold() in _HERE and here is not None:
+            place = here
+        if isinstance(place, NoPlace):
+            if place.several:
+                return place
+        elif word == "on":
+            only = places.said(place)
+            return NoPlace(f"I know no “{head}” {rest}, only {only}: which place do you mean?")
+        else:
+            return NoPlace(_BY_WHEN.format(said=rest))
+    return None
 
 
 def _request(way: _Slots, places: Mapping[str, str], known: SpokenPlaces) -> AnyRequest:

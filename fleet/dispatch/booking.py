@@ -95,12 +95,17 @@ class Series:
 
 @dataclass(frozen=True, slots=True)
 class Expected:
-    """When a request is begun and done, and by whom; `place`: where its next stop is."""
+    """When a request is begun and done, and by whom; `place`: where its next stop is.
+
+    `late_s`: how much later that is than planned, as a robot has not done by now what it was to do
+    by then; the times are then the earliest that are left.
+    """
 
     robot: str
     place: str
     begins_s: float
     done_s: float
+    late_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

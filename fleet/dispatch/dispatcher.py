@@ -275,18 +275,21 @@ class Dispatcher:
         has to be told before it sets out."""
         return self._state.fleet.taken_out()
 
-    def views(self) -> list[RequestView]:
-        """All requests that are known, in the order in which they came."""
-        stops = stops_by_booking(self._state.fleet)
+    def views(self, now_s: float | None = None) -> list[RequestView]:
+        """All requests that are known, in the order in which they came, for who reads them then.
+
+        None: at the latest time that was told.
+        """
+        stops = stops_by_booking(self._state.fleet, now_s)
         return [view_of(booking, stops) for booking in self._state.bookings.values()]
 
-    def view(self, name: str) -> RequestView:
-        """How far a request has come. Raises `NotFoundError`."""
+    def view(self, name: str, now_s: float | None = None) -> RequestView:
+        """How far a request has come, for who reads that then. Raises `NotFoundError`."""
         if name in self._state.series:
             raise NotFoundError(f"the request '{name}' recurs: look at '{name}/1' and so on")
         if name not in self._state.bookings:
             raise NotFoundError(f"there is no request '{name}'")
-        return view_of(self._state.bookings[name], stops_by_booking(self._state.fleet))
+        return view_of(self._state.bookings[name], stops_by_booking(self._state.fleet, now_s))
 
     def expected(self, name: str) -> Expected | None:
         """When it is begun and done; None where it is in no plan. Raises `NotFoundError`."""

@@ -3,12 +3,15 @@
 That is for requests whose answer was not kept, as the service ended before it was known.
 """
 
+from uuid import UUID
+
 from pydantic import BaseModel
 
 from mend.errors import ConflictError
 from mend.server.api.json_answer import JSON
 from mend.server.api.services import Services
 from mend.server.documents import DocumentKind, DocumentLibrary
+from mend.server.fleets.views import RequestView
 from mend.server.journal import events as ev
 from mend.server.journal.keyed_request import FirstAnswer
 from mend.server.runtime.journaled_tree import read_without_tree
@@ -49,7 +52,17 @@ async def _view_of(event: ev.Event, services: Services) -> tuple[int, BaseModel,
             return 200, event, None
         case ev.Claimed(dialogue=dialogue) | ev.Released(dialogue=dialogue):
             return 200, await services.runs.dialogues.view(dialogue), None
+        case ev.RequestChanged(site=site, request=name):
+            return await _booked(site, name, services)
     raise _lost()
+
+
+async def _booked(site: UUID, name: str, services: Services) -> tuple[int, BaseModel, str]:
+    """Of what recurs the event is that of some occurrence, the answer that of the first."""
+    recurring, is_occurrence, _ = name.partition("/")
+    first = f"{recurring}/1" if is_occurrence else name
+    view = RequestView.of(*await services.fleets.request(site, first))
+    return 201, view, f"/api/requests/{first}?site={site}"
 
 
 def _library(kind: DocumentKind, services: Services) -> DocumentLibrary:

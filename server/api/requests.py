@@ -1,6 +1,7 @@
 """Requests over REST: what people of a building want of its robots, and how far that has come."""
 
-from typing import Annotated
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated
 from uuid import UUID
 
 from fastapi import APIRouter, Body, Path, Query, Response
@@ -8,9 +9,13 @@ from fastapi import APIRouter, Body, Path, Query, Response
 from mend.fleet.requests import Request, RequestStatus
 from mend.server.api.problems import documented
 from mend.server.api.repeatable import RepeatableRoute
-from mend.server.api.services import Limit, Offset, WithCaller, WithServices
+from mend.server.api.services import Limit, Offset, Services, WithCaller, WithServices
 from mend.server.fleets.asking import UnderstoodView, WordsAsked, understand
 from mend.server.fleets.views import RequestView
+from mend.server.fleets.waiting_robots import followed, waiting_robots
+
+if TYPE_CHECKING:
+    from mend.fleet.dispatch.booking import RequestView as Booked
 
 router = APIRouter(tags=["requests"], route_class=RepeatableRoute)
 
@@ -20,6 +25,8 @@ EXAMPLES = [
     {"kind": "deliver_message", "name": "lunch", "place": "F1/102", "message": "Lunch is ready."},
 ]  # fmt: skip
 WORDS = [{"words": "bring this to room 203 by three o'clock", "robot": "robot1", "clock": "14:20"}]
+MOST_OPEN = 1000
+"""Every dialogue that is open: a robot has one at a time."""
 AtSite = Annotated[
     UUID | None, Query(description="The site whose robots are meant, where several take requests.")
 ]
@@ -71,8 +78,8 @@ async def list_requests(
 ) -> list[RequestView]:
     """All requests that are open, and the last ones that are over, in the order they came."""
     found = await services.fleets.requests(site)
-    views = [RequestView.of(*each) for each in found if status in (None, each[1].status)]
-    return views[offset : offset + limit]
+    wanted = [each for each in found if status in (None, each[1].status)]
+    return await _followed(wanted[offset : offset + limit], services)
 
 
 @router.get(
@@ -83,8 +90,17 @@ async def list_requests(
 async def get_request(
     name: RequestPath, services: WithServices, site: AtSite = None
 ) -> RequestView:
-    """How far one request has come, and when it is expected to be done."""
-    return RequestView.of(*await services.fleets.request(site, name))
+    """How far one request has come, when it is expected, and what its robot waits for."""
+    (view,) = await _followed([await services.fleets.request(site, name)], services)
+    return view
+
+
+async def _followed(
+    found: "Sequence[tuple[UUID, Booked]]", services: Services
+) -> list[RequestView]:
+    waiting = waiting_robots(await services.runs.dialogues.page("open", MOST_OPEN, 0))
+    fleets = {at: await services.fleets.fleet(at) for at in {at for at, _ in found}}
+    return [followed(at, booked, fleets[at].run_of, waiting) for at, booked in found]
 
 
 @router.put(

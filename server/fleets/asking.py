@@ -10,6 +10,7 @@ from mend.documents.spellings import CLOCK
 from mend.fleet.asking.deadline import By, Deadline, minutes_left
 from mend.fleet.asking.understanding import AskedBack, understood
 from mend.fleet.requests import LAST_S, RequestKind
+from mend.server.fleets.item_names import made_name
 from mend.server.runtime.views import View
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 MOST_CHARACTERS = 500
 _SPEED_OF_DAYS = 1.0
-_NAME_DIGITS = 6
+_MARK_DIGITS = 8
 
 
 class WordsAsked(BaseModel):
@@ -74,7 +75,7 @@ async def understand(fleet: "FleetAtWork", asked: WordsAsked) -> UnderstoodView:
         if question is not None:
             return UnderstoodView(question=question)
         latest_s = _latest_s(fleet, found.deadline, now_min or 0)
-    name = f"r{uuid4().hex[:_NAME_DIGITS]}"
+    name = made_name(found.request, uuid4().hex[:_MARK_DIGITS])
     request = found.request.model_copy(update={"name": name, "latest_s": latest_s})
     return UnderstoodView(
         request=request.model_dump(mode="json", exclude_none=True), read_back=found.read_back

@@ -422,6 +422,10 @@ class FleetAtWork:
         """What a robot's battery holds, as a share; None where it does not run out or say so."""
         return self._site.battery(robot)
 
+    async def requests(self) -> list[RequestView]:
+        """How far all requests are that are known, and when they are expected just now."""
+        return await self.read(lambda all_: all_.views(self.shown_s))
+
     async def read(self, view: Callable[[Dispatcher], T]) -> T:
         """What a view of its dispatcher shows, while nothing changes there."""
         async with self._book.at_once:

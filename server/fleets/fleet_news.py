@@ -7,6 +7,7 @@ from uuid import UUID
 from mend.fleet.dispatch.booking import PlanChange, RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Leg, LegEnd
+from mend.fleet.requests import RequestStatus
 from mend.robots.link.messages import Driven
 from mend.server.fleets.fleet_record import Errand
 from mend.server.journal import events as ev
@@ -138,7 +139,7 @@ class FleetNews:
             reason=view.reason,
             robot=None if expected is None else expected.robot,
             done_s=None if expected is None else expected.done_s,
-            author=author,
+            author=_without_key(author) if view.status is RequestStatus.REFUSED else author,
         )
 
     def _change(self, change: PlanChange) -> ev.PlanChanged:
@@ -156,6 +157,11 @@ class FleetNews:
                 for name, saving in change.transfers.items()
             ],
         )
+
+
+def _without_key(author: ev.Author | None) -> ev.Author | None:
+    """What is refused leaves its key free: whoever asks once more is told why again."""
+    return None if author is None else ev.Author.model_validate(author.model_dump())
 
 
 def _state(view: RequestView) -> object:

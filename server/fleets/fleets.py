@@ -175,13 +175,13 @@ class Fleets:
     async def request(self, site: UUID | None, name: str) -> "tuple[UUID, RequestView]":
         """How far a request is. Raises `NotFoundError`."""
         fleet = await self._of(site)
-        return fleet.site, await fleet.read(lambda all_: all_.view(name))
+        return fleet.site, await fleet.read(lambda all_: all_.view(name, fleet.shown_s))
 
     async def requests(self, site: UUID | None) -> "list[tuple[UUID, RequestView]]":
         """All requests that are known, of a site or of all."""
         ids = [site] if site is not None else [each.site for each in self._sites.records()]
         fleets = [await self._of(e) for e in ids if self._sites.record(e).fleet is not None]
-        views = [(each.site, await each.read(lambda all_: all_.views())) for each in fleets]
+        views = [(each.site, await each.requests()) for each in fleets]
         return [(at, view) for at, of_site in views for view in of_site]
 
     async def fleet(self, site: UUID | None) -> "FleetAtWork":

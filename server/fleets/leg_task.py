@@ -1,11 +1,9 @@
 """The runs of a leg: their ids, what is asked of them, and their tasks of one leaf."""
 
-import re
 from collections.abc import Mapping
 from enum import StrEnum
 from typing import Any
 from uuid import UUID, uuid5
-from zlib import crc32
 
 from pydantic import ValidationError
 
@@ -23,10 +21,10 @@ from mend.fleet.requests import (
     Transport,
 )
 from mend.robots.execution.behavior import Behavior
+from mend.server.fleets.item_names import item_of
 from mend.server.runtime.requests import RunRequest
 from mend.server.sites.requests import FleetOptions
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
-from mend.tasks.plain_letters import plain_letters
 from mend.tasks.scenario import Person
 
 GO_TO = "go_to"
@@ -43,9 +41,6 @@ BEHAVIORS = {
     LegAction.BRING_BACK: HAND_OVER,
 }
 """What robots do at the end of a leg, where there is more to it than being there."""
-_ARTICLE = re.compile(r"^(the|a|an)\s+", re.IGNORECASE)
-_NO_WORD = re.compile(r"[^A-Za-z0-9]+")
-_MOST_OF_WHAT = 31
 ASKED_IN_VAIN = 2
 """When it is put, and when it is put again: then a question goes to somebody else."""
 MOST_ANSWERS = 20
@@ -81,25 +76,6 @@ def _request(site: UUID, tree: str, robot: str, options: FleetOptions) -> RunReq
     first = ["silence"] * ASKED_IN_VAIN if options.answers == "late" else []
     person = {"answers": [*first, *["yes"] * MOST_ANSWERS], "person": Person(acts=True)}
     return request.model_copy(update=person)
-
-
-def item_of(what: str, booking: str) -> str:
-    """What robots call a thing: as a person does, as far as names go, and each its own."""
-    words = _plain(_ARTICLE.sub("", what.strip()))[:_MOST_OF_WHAT].strip("_")
-    words = words if words[:1].isalpha() else f"item_{words}".rstrip("_")
-    asked, mark = _plain(booking), f"{crc32(booking.encode()):08x}"
-    if words == asked:
-        return words
-    if f"_{asked}_" in f"_{words}_":
-        # "The cup of tea tea" nobody would say: such a mark is not spoken.
-        return f"{words}--{mark}"
-    if len(asked) > _MOST_OF_WHAT:
-        asked = f"{asked[: _MOST_OF_WHAT - 9]}_{mark}"
-    return f"{words}-{asked}"
-
-
-def _plain(text: str) -> str:
-    return _NO_WORD.sub("_", plain_letters(text))
 
 
 def doable_kinds(behaviors: Mapping[str, type[Behavior]]) -> list[RequestKind]:

@@ -19,19 +19,32 @@ if TYPE_CHECKING:
 class ExpectedView(View):
     """When a robot begins with a request, and is done with it (the site's clock, seconds).
 
-    `place`: where it goes first.
+    `place`: where it goes first. `late_s`: how much later than planned that is, as something is not
+    done yet that was to be done by now; the times are then the earliest that are left.
     """
 
     robot: str
     place: str
     begins_s: float
     done_s: float
+    late_s: float = 0.0
+
+
+class RobotWaitsView(View):
+    """A robot that waits for people in a dialogue: what it asks, or, once somebody (`helper`) has
+    promised help, what that is about."""
+
+    robot: str
+    dialogue: UUID
+    headline: str
+    helper: str | None
 
 
 class RequestView(View):
     """How far a request has come. `what`: as it was asked; `reason`: why it is not as asked.
 
     Of what is done it says what is known of that, where its robot could not feel all of it.
+    `waits`: its robot waits for people; None where it does not.
     """
 
     name: str
@@ -40,9 +53,10 @@ class RequestView(View):
     status: RequestStatus
     reason: str | None
     expected: ExpectedView | None
+    waits: RobotWaitsView | None = None
 
     @classmethod
-    def of(cls, site: UUID, booked: "Booked") -> "RequestView":
+    def of(cls, site: UUID, booked: "Booked", waits: RobotWaitsView | None = None) -> "RequestView":
         """What is told of a booking."""
         expected = booked.expected
         return cls(
@@ -58,7 +72,9 @@ class RequestView(View):
                 place=expected.place,
                 begins_s=expected.begins_s,
                 done_s=expected.done_s,
+                late_s=expected.late_s,
             ),
+            waits=waits,
         )
 
 

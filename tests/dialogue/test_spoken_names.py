@@ -3,6 +3,7 @@
 import pytest
 
 from mend.dialogue.spoken import called, count_of, spoken
+from mend.dialogue.worded import sentences_of
 
 
 @pytest.mark.parametrize(
@@ -16,6 +17,12 @@ from mend.dialogue.spoken import called, count_of, spoken
 )
 def test_robots_of_a_site_are_called_by_the_names_of_their_scene(name: str, said: str) -> None:
     assert called(name) == said
+
+
+def test_what_people_have_only_pointed_at_is_spoken_of_in_words_of_each_language() -> None:
+    nameless = spoken("thing_to_be_brought--0afba7d8")
+    assert nameless == "thing to be brought"
+    assert [each.key for each in sentences_of(nameless)] == ["thing to be brought"]
 
 
 def test_identifiers_are_said_as_words() -> None:

@@ -93,6 +93,7 @@ async def test_a_robot_is_sent_where_nobody_wants_it_but_whoever_sends_it(
     )
     await expect(row(page, "ROBOT1")).to_contain_text("It came to F1 103 at", timeout=LONG_MS)
     await expect(row(page, "ROBOT1")).to_contain_text("On F1, at 103")
+    await expect(page.get_by_text("is on its way to F1/103")).to_have_count(0)
     await service.fleets.submit(site, GoToRoom(name="visit", place="F1/106", stay_s=600.0), None)
     await expect(row(page, "ROBOT1")).to_contain_text("comes for visit", timeout=LONG_MS)
     await page.get_by_role("button", name="Send home ROBOT1").click()

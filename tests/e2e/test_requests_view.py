@@ -8,7 +8,7 @@ import pytest
 import pytest_asyncio
 from console_in_browser import OpenPage
 from office_with_fleet import open_office_with_fleet
-from playwright.async_api import Page, expect
+from playwright.async_api import Page, Route, expect
 
 from mend.server.composition import Service
 
@@ -71,6 +71,37 @@ async def test_what_cannot_be_met_in_time_is_offered_for_when_it_can(office: Reo
     await page.get_by_role("button", name="instead").click()
     open_ones = page.get_by_role("list", name="Open requests")
     await expect(open_ones).to_contain_text("Tell “Lunch is ready.” at F1/106", timeout=LONG_MS)
+
+
+async def test_what_is_not_known_to_be_booked_is_booked_once_however_it_is_asked_for_again(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service)
+    page = await open_page("/requests")
+
+    async def lose(route: Route) -> None:
+        if route.request.method != "POST":
+            return await route.continue_()
+        await route.fetch()
+        await route.abort()
+
+    await page.get_by_label("Have a robot come").check(timeout=LONG_MS)
+    await page.get_by_label("Where").fill("F1 106")
+    await page.clock.install()
+    await page.route("**/api/requests?*", lose)
+    ask = page.get_by_role("button", name="Ask for it", exact=True)
+    await ask.click()
+    unknown = page.get_by_text("I do not know whether that was booked.")
+    for _ in range(20):
+        await expect(page.get_by_text("I try once more").or_(unknown)).to_be_visible()
+        if await unknown.is_visible():
+            break
+        await page.clock.run_for(5_000)
+    await page.unroute("**/api/requests?*")
+    await ask.click()
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("Come to F1 106")
+    assert len(await service.fleets.requests(None)) == 1
 
 
 async def test_a_newcomer_asks_in_words_and_follows_it(office: Reopen) -> None:

@@ -9,7 +9,7 @@ import pytest_asyncio
 from console_in_browser import OpenPage, settle
 from hearing_browser import give_ear
 from office_with_fleet import open_office_with_fleet
-from playwright.async_api import Page, ViewportSize, expect
+from playwright.async_api import Page, Route, ViewportSize, expect
 from test_accessibility import PHONE, RULES, load_axe, violations
 
 from mend.server.composition import Service
@@ -157,6 +157,108 @@ async def test_what_cannot_be_met_says_why_and_offers_the_next_time(
     await page.get_by_role("button", name="instead").click()
     mine = page.get_by_role("region", name="Your request")
     await expect(mine).to_contain_text("Come to F8 806", timeout=LONG_MS)
+
+
+async def test_what_is_booked_though_its_answer_is_lost_is_booked_once_and_followed(
+    screen: Screen,
+) -> None:
+    page = await screen.begin()
+    before = len(await screen.service.fleets.requests(None))
+    lost = 1
+
+    async def lose(route: Route) -> None:
+        nonlocal lost
+        if route.request.method != "POST" or lost == 0:
+            return await route.continue_()
+        lost -= 1
+        await route.fetch()
+        await route.abort()
+
+    await page.route("**/api/requests?*", lose)
+    await page.get_by_label("Say it in words").fill("tell 203 that tea is ready")
+    await press(page, "Say it")
+    await press(page, "Yes, that is right")
+    await expect(page.get_by_text("I try once more")).to_be_visible()
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("Tell “tea is ready” at F2 203")
+    assert len(await screen.service.fleets.requests(None)) == before + 1
+
+
+async def test_what_is_not_known_to_be_booked_is_said_so_and_asked_for_once_more_once(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await at_robot(service, open_page, floors=1)
+
+    async def lose(route: Route) -> None:
+        if route.request.method != "POST":
+            return await route.continue_()
+        await route.fetch()
+        await route.abort()
+
+    await page.clock.install()
+    await page.route("**/api/requests?*", lose)
+    await press(page, "Come to a room")
+    await press(page, "F1 106")
+    await press(page, "Yes, that is right")
+    unknown = page.get_by_text("I do not know whether that was booked.")
+    for _ in range(20):
+        await expect(page.get_by_text("I try once more").or_(unknown)).to_be_visible()
+        if await unknown.is_visible():
+            break
+        await page.clock.run_for(5_000)
+    await expect(page.get_by_text("That cannot be done")).to_be_hidden()
+    await page.unroute("**/api/requests?*")
+    await press(page, "Try once more")
+    await expect(page.get_by_role("region", name="Your request")).to_contain_text("Come to F1 106")
+    assert len(await service.fleets.requests(None)) == 1
+
+
+async def test_who_has_asked_is_told_that_the_robot_waits_for_somebody(
+    service: Service, open_page: OpenPage
+) -> None:
+    site = await open_office_with_fleet(service, 20.0, answers="live")
+    page = await open_page(f"/robots/{await robot_of(service, site)}/ask")
+    await page.get_by_label("Say it in words").fill(
+        "bring the tea from 103 to 106", timeout=LONG_MS
+    )
+    await press(page, "Say it")
+    await press(page, "Yes, that is right")
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("I wait for somebody to help me:", timeout=LONG_MS)
+    await expect(mine).to_contain_text("Put the tea into my basket")
+    await expect(mine).to_contain_text("at the earliest")
+    page = await open_page("/requests")
+    row = page.get_by_role("list", name="Open requests")
+    await expect(row).to_contain_text("waits for somebody to help: Put the tea into")
+
+
+async def test_a_message_is_told_with_the_marks_that_robots_say(screen: Screen) -> None:
+    page = await screen.begin()
+    await press(page, "Tell somebody something")
+    await page.get_by_label("The message, as it is to be told").fill('Say "hello" to «Zoë»')
+    await press(page, "Go on")
+    await press(page, "F1 106")
+    await expect(page.get_by_text("“Say 'hello' to 'Zoë'”. Is that right?")).to_be_visible()
+    await press(page, "Yes, that is right")
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("Tell “Say 'hello' to 'Zoë'” at F1 106")
+
+
+async def test_what_was_typed_is_kept_where_it_is_not_right_or_refused(screen: Screen) -> None:
+    page = await screen.begin()
+    await page.get_by_label("Say it in words").fill("come to 203")
+    await press(page, "Say it")
+    await press(page, "No")
+    await expect(page.get_by_label("Say it in words")).to_have_value("come to 203")
+    await press(page, "Tell somebody something")
+    message = page.get_by_label("The message, as it is to be told")
+    await message.fill("Tea is\u200b ready")
+    await press(page, "Go on")
+    await press(page, "F1 106")
+    await press(page, "Yes, that is right")
+    await expect(page.get_by_text("only characters that can be seen")).to_be_visible()
+    await press(page, "Ask for it in other words")
+    await expect(message).to_have_value("Tea is\u200b ready")
 
 
 async def test_every_button_is_large(screen: Screen) -> None:

@@ -32,6 +32,15 @@ TEA: dict[str, Any] = {
 }
 
 
+@pytest.mark.parametrize(
+    "said", ['Say "hi".', "Say “hi”.", "Say „hi“.", "Say «hi».", " Say ‟hi” . "]
+)
+def test_what_is_written_has_the_quotation_marks_that_robots_can_say(said: str) -> None:
+    message = DeliverMessage(name="m", place="b", message=said).message
+    assert message.replace(" ", "") == "Say'hi'."
+    assert message == message.strip()
+
+
 def test_visit_is_an_item_that_stays_at_its_place() -> None:
     visit = GoToRoom(name="visit", place="b", earliest_s=10.0, latest_s=60.0, stay_s=5.0)
     item = visit.item("visit", TERMS)

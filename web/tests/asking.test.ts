@@ -2,10 +2,10 @@
 import { describe, expect, it } from "vitest";
 import { byFloor, placeMeant } from "../src/requests/places";
 import { when } from "../src/requests/when";
-import { requestOf } from "../src/requests/wish";
+import { NO_WISH, requestOf } from "../src/requests/wish";
 import { followed } from "../src/requests/use_asking";
 import type { RequestView } from "../src/wire/types";
-import { type Asked, nextStep, readBackOf, wishOf } from "../src/touch/steps";
+import { type Asked, nextStep, readBackOf, textOf, wishOf } from "../src/touch/steps";
 
 const PLACES = ["F1/101", "F1/kitchen", "F1/meeting room", "F2/203", "F2/kitchen"];
 
@@ -62,6 +62,8 @@ describe("at a touch screen", () => {
     const whole: Asked = { ...asked, answers: ["this", "F1/101", "F2/203"] };
     expect(nextStep(whole)).toBe(null);
     expect(readBackOf(wishOf(whole, null))).toBe("I am to bring this from F1 101 to F2 203. Is that right?");
+    expect(requestOf(wishOf(whole, null), 0, "ab12")).toMatchObject({ name: "thing--ab12", what: "this" });
+    expect([textOf(whole), textOf({ ...whole, answers: ["tea"] })]).toEqual([null, "tea"]);
   });
 
   it.each([
@@ -72,11 +74,18 @@ describe("at a touch screen", () => {
     expect(readBackOf(wishOf(asked, "F1/101"))).toBe(`I am to ${said}. Is that right?`);
   });
 
+  it("a message is read back, and asked for, with the marks that robots say", () => {
+    const wish = wishOf({ kind: "deliver_message", answers: ['Say "hello" to «Zoë» ', "F2/203"] }, null);
+    expect(readBackOf(wish)).toBe("I am to tell F2 203 that “Say 'hello' to 'Zoë'”. Is that right?");
+    expect(requestOf(wish, 0, "ab12")).toMatchObject({ message: "Say 'hello' to 'Zoë'" });
+    expect(requestOf({ ...NO_WISH, kind: "escort", person: "„Zoë“" }, 0, "ab12")).toMatchObject({ person: "'Zoë'" });
+  });
+
   it("whoever asks is shown the way from where the robot is", () => {
     const wish = wishOf({ kind: "escort", answers: ["F2/203"] }, "F1/101");
     expect(requestOf(wish, 0, "ab12")).toEqual({
       kind: "escort",
-      name: "escort-ab12",
+      name: "escort--ab12",
       person: "whoever asked",
       origin: "F1/101",
       destination: "F2/203",

@@ -1,6 +1,7 @@
 // The rows of a fleet's chart, and what is known of its past.
 import { describe, expect, it } from "vitest";
 import { changeInWords, chartRows } from "../src/fleet/chart_rows";
+import { expectation } from "../src/requests/request_words";
 import { eventsUntil, type FleetEvent, isOfFleet, requestsAfter } from "../src/fleet/fleet_past";
 import type { Event, FleetRobot } from "../src/wire/types";
 
@@ -98,8 +99,16 @@ describe("the past of a fleet", () => {
     const change = (at_s: number, status: string, robot_: string | null) =>
       event("request_changed", at_s, { request: "tea", what: { kind: "go_to_room" }, status, reason: null, robot: robot_, done_s: robot_ && 90 });
     const events = [change(1, "booked", ONE), change(5, "under_way", ONE), change(90, "done", null)];
-    expect(requestsAfter(eventsUntil(events, 6))).toMatchObject([{ name: "tea", status: "under_way", expected: { robot: ONE, done_s: 90 } }]);
+    expect(requestsAfter(eventsUntil(events, 6))).toMatchObject([{ name: "tea", status: "under_way" }]);
     expect(requestsAfter(events)).toMatchObject([{ status: "done", expected: null }]);
     expect(requestsAfter([])).toEqual([]);
+  });
+
+  it("says nothing of when a request was expected, as that went on changing", () => {
+    const booked = { request: "tea", what: { kind: "go_to_room" }, status: "booked", reason: null, robot: ONE, done_s: 90 };
+    const replanned = event("plan_changed", 50, { number: 1, reason: "it is late", requests: ["tea"], robots: [TWO], said: {} });
+    const [tea] = requestsAfter([event("request_changed", 1, booked), replanned]);
+    expect(tea?.expected).toBe(null);
+    expect(expectation(tea!, 60)).toBe("");
   });
 });

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { shapesOf } from "../src/question/detection_overlay";
-import { faultInWords, robotName } from "../src/question/fault_words";
+import { faultInWords, robotName, spoken } from "../src/question/fault_words";
 import { readRunClock, runTime } from "../src/state/run_clock";
 import type { Detection } from "../src/wire/types";
 
@@ -15,6 +15,11 @@ describe("a fault in words", () => {
     expect(faultInWords({ ...about, issue: "door_closed", object: null })).toBe(
       "The robot could not go on with “bar” (door closed).",
     );
+  });
+
+  it("leaves out what only tells equal names apart", () => {
+    expect(spoken("collect cup_of_tea--0afba7d8")).toBe("collect cup of tea");
+    expect(spoken("part--12")).toBe("part  12");
   });
 
   it("leaves out the number that a run gives a robot", () => {

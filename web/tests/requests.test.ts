@@ -1,19 +1,21 @@
 // What is said of requests, and what a filled-in form asks for.
 import { describe, expect, it } from "vitest";
 import { expectation, isOver, wanted, within } from "../src/requests/request_words";
+import { soon } from "../src/requests/followed";
 import { missing, NO_WISH, requestOf, type Wish } from "../src/requests/wish";
 import type { RequestStatus, RequestView } from "../src/wire/types";
 
 const MAIL: Wish = { ...NO_WISH, what: " the mail ", origin: "F1/101", destination: "F2/203" };
 
 function request(what: object, status: RequestStatus = "booked", done = 300): RequestView {
-  const expected = { robot: "robot1", place: "F1/101", begins_s: 0, done_s: done };
-  return { name: "r", site: "s", what: { ...what }, status, reason: null, expected } as RequestView;
+  const expected = { robot: "robot1", place: "F1/101", begins_s: 0, done_s: done, late_s: 0 };
+  return { name: "r", site: "s", what: { ...what }, status, reason: null, expected, waits: null } as RequestView;
 }
 
 describe("words of requests", () => {
   it.each([
     [{ kind: "transport", what: "mail", origin: "F1/101", destination: "F2/203" }, "Bring mail from F1/101 to F2/203"],
+    [{ kind: "transport", what: "this", origin: "F1/101", destination: "F2/203" }, "Bring this from F1/101 to F2/203"],
     [{ kind: "deliver_message", message: "Lunch.", place: "F1/101" }, "Tell “Lunch.” at F1/101"],
     [{ kind: "go_to_room", place: "F1/101" }, "Come to F1/101"],
     [{ kind: "escort", person: "Ann", origin: "hall", destination: "F1/101" }, "Show Ann the way from hall to F1/101"],
@@ -27,6 +29,21 @@ describe("words of requests", () => {
     expect(expectation(request(going, "under_way"), 290)).toBe("robot1, done in less than a minute");
     expect(expectation(request(going, "done"), 60)).toBe("");
     expect(isOver(request(going, "failed"))).toBe(true);
+  });
+
+  it("say that nobody knows until when, once a robot is late or waits for people", () => {
+    const late = request({ kind: "go_to_room", place: "F1/101" }, "under_way");
+    const waits = { robot: "robot1", dialogue: "d", headline: "Can you open the door?", helper: null };
+    const earliest = "robot1, done in about 4 minutes at the earliest";
+    expect(expectation({ ...late, waits }, 60)).toBe(earliest);
+    expect(expectation({ ...late, expected: { ...late.expected!, late_s: 5 } }, 60)).toBe(earliest);
+    expect(expectation(late, 400)).toBe("robot1, done in less than a minute at the earliest");
+    expect(soon({ ...late, waits }, { now: 60, speed: "max" })).toContain("at the earliest in about 4 minutes");
+    expect(soon(late, { now: 60, speed: "max" })).toContain("be done with it in about 4 minutes");
+    expect(expectation({ ...late, status: "done", waits }, 400)).toBe("");
+  });
+
+  it("say how long that is", () => {
     expect(within(60)).toBe("in about 1 minute");
   });
 });
@@ -52,7 +69,7 @@ describe("a filled-in form", () => {
   it("is a request by the building's clock", () => {
     expect(requestOf({ ...MAIL, within: "5" }, 100, "ab12")).toEqual({
       kind: "transport",
-      name: "the_mail-ab12",
+      name: "the_mail--ab12",
       what: "the mail",
       origin: "F1/101",
       destination: "F2/203",
@@ -60,10 +77,10 @@ describe("a filled-in form", () => {
     });
     expect(requestOf({ ...NO_WISH, kind: "go_to_room", place: "F1/101" }, 0, "ab12")).toEqual({
       kind: "go_to_room",
-      name: "visit-ab12",
+      name: "visit--ab12",
       place: "F1/101",
     });
-    expect(requestOf({ ...MAIL, what: "3 Schlüssel" }, 0, "x")["name"]).toBe("Schl_ssel-x");
-    expect(requestOf({ ...MAIL, what: "钥匙" }, 0, "x")["name"]).toBe("thing-x");
+    expect(requestOf({ ...MAIL, what: "3 Schlüssel" }, 0, "x")["name"]).toBe("Schl_ssel--x");
+    expect(requestOf({ ...MAIL, what: "钥匙" }, 0, "x")["name"]).toBe("thing--x");
   });
 });

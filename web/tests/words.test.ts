@@ -64,6 +64,15 @@ describe("what the service says", () => {
     );
   });
 
+  it("is said of a thing that nobody has named, too", () => {
+    const part = [{ key: "thing to be brought", args: {} }];
+    const put_in = [{ key: "put {it} into my basket", args: { it: [{ key: "the {part}", args: { part } }] } }];
+    const text = "Please put the thing to be brought into my basket.";
+    learn([{ text, sentences: [{ key: "Please {put_in}.", args: { put_in } }] }]);
+    expect(said(text)).toBe("Bitte „was gebracht werden soll“ in meinen Korb legen.");
+    expect(said("I have come to 101 to collect the thing to be brought")).toContain("um „was gebracht werden soll“ abzuholen");
+  });
+
   it("stays English where one of its sentences is of a script that nobody has translated", () => {
     learn([{ text: "It squeaks. Will you oil it?", sentences: [{ key: "It squeaks.", args: {} }] }]);
     expect(translated("It squeaks. Will you oil it?")).toBeNull();

@@ -5,6 +5,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import AfterValidator, Field
 
+from mend.documents.quotation_marks import MARKS
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.behaviors.behavior import (
     MEETS_M,
@@ -18,7 +19,6 @@ from mend.robots.link.shown_name import can_be_shown
 from mend.tasks.scene import Name
 
 MOST_CHARACTERS = 300
-_QUOTES = frozenset('“”„‟«»"')
 
 
 def require_sayable(what: str) -> Callable[[str], str]:
@@ -28,7 +28,7 @@ def require_sayable(what: str) -> Callable[[str], str]:
     """
 
     def require(text: str) -> str:
-        if not can_be_shown(text) or not _QUOTES.isdisjoint(text):
+        if not can_be_shown(text) or not set(MARKS).isdisjoint(text):
             raise ValueError(
                 f"{what} has only characters that can be seen, no double quotation marks, and no "
                 "blank at its ends"

@@ -249,6 +249,45 @@ def test_robot_stays_free_until_it_must_leave() -> None:
     assert dispatcher.may_begin(leg, 1000.0)
 
 
+def test_what_is_read_later_than_it_was_expected_is_expected_at_the_earliest_from_then_on() -> None:
+    dispatcher = dispatcher_for("a")
+    dispatcher.submit(asked(), 0.0)
+    dispatcher.submit(asked(name="milk", origin="d", destination="e", earliest_s=100.0), 0.0)
+    only_leg(dispatcher, 0.0)
+    told = dispatcher.snapshot()
+    for now_s, tea_s, milk_s in ((5.0, 40.0, 120.0), (60.0, 90.0, 120.0), (400.0, 430.0, 450.0)):
+        tea, milk = (dispatcher.view(each, now_s).expected for each in ("tea", "milk"))
+        assert tea is not None
+        assert milk is not None
+        assert (tea.done_s, tea.late_s) == (pytest.approx(tea_s), pytest.approx(tea_s - 40.0))
+        assert (milk.done_s, milk.late_s) == (pytest.approx(milk_s), pytest.approx(milk_s - 120.0))
+    assert dispatcher.snapshot() == told
+
+
+def test_what_the_plan_is_told_of_the_time_is_late_no_more_beside_it() -> None:
+    dispatcher = dispatcher_for("a")
+    dispatcher.submit(asked(), 0.0)
+    only_leg(dispatcher, 0.0)
+    before = dispatcher.view("tea", 60.0).expected
+    dispatcher.legs_to_begin(60.0)
+    after = dispatcher.view("tea", 60.0).expected
+    assert before is not None
+    assert after is not None
+    assert after.done_s == pytest.approx(before.done_s)
+    assert (before.late_s, after.late_s) == (pytest.approx(50.0), 0.0)
+
+
+def test_what_waits_at_its_place_is_done_now_at_the_earliest() -> None:
+    dispatcher = dispatcher_for("a")
+    dispatcher.submit(asked(), 0.0)
+    leg = only_leg(dispatcher, 0.0)
+    dispatcher.arrived(leg, 10.0)
+    for now_s, done_s in ((14.0, 40.0), (75.0, 100.0)):
+        expected = dispatcher.view("tea", now_s).expected
+        assert expected is not None
+        assert expected.done_s == pytest.approx(done_s)
+
+
 def test_expected_time_follows_a_robot_that_is_late() -> None:
     dispatcher = dispatcher_for("a")
     dispatcher.submit(asked(), 0.0)

@@ -15,11 +15,11 @@ from mend.fleet.requests import (
     RequestKind,
     Transport,
 )
+from mend.server.fleets.item_names import item_of, made_name
 from mend.server.fleets.leg_task import (
     BEHAVIORS,
     LegStage,
     doable_kinds,
-    item_of,
     require_doable,
     run_of,
     task_of,
@@ -62,11 +62,25 @@ def test_who_fetches_something_out_of_a_basket_says_whose_it_is() -> None:
         ("a cup of tea", "tea", "cup_of_tea--8e86d7b2"),
         ("a cup of tea", "te", "cup_of_tea-te"),
         ("…", "k", "item-k"),
+        ("this", "p1", "thing_to_be_brought--3f386b33"),
+        (" It ", "it--0afba7d8", "thing_to_be_brought--57b6f51b"),
+        ("the tea", "tea--0afba7d8", "tea--83f146ec"),
+        ("the tea", "the_tea--0afba7d8/3", "tea--2c7e84ec"),
         ("x" * 99, "y" * 64, f"{'x' * 31}-{'y' * 22}_4492a58b"),
     ],
 )
 def test_a_thing_is_called_as_people_do_as_far_as_names_go(what, booking, called) -> None:
     assert item_of(what, booking) == called
+
+
+@pytest.mark.parametrize(
+    ("what", "name"),
+    [("the blue parcel", "blue_parcel"), ("this", "transport"), ("3 keys", "transport")],
+)
+def test_a_request_that_nobody_names_is_called_after_what_is_brought(what: str, name: str) -> None:
+    request = Transport(name="asked", what=what, origin="101", destination="102")
+    assert made_name(request, "0afba7d8") == f"{name}--0afba7d8"
+    assert made_name(GoToRoom(name="asked", place="101"), "0afba7d8") == "go_to_room--0afba7d8"
 
 
 def test_the_same_thing_is_meant_where_it_is_fetched_and_where_it_is_brought() -> None:
@@ -101,9 +115,11 @@ def test_what_no_robot_can_do_is_refused_before_it_is_booked() -> None:
     require_doable(Escort(name="e", person="Ann", origin="101", destination="102"), behaviors)
     with pytest.raises(WrongInputError, match="of the kind 'transport'"):
         require_doable(PARCEL, {})
-    quoted = DeliverMessage(name="m", place="101", message='She said "no".')
-    with pytest.raises(WrongInputError, match="no double quotation marks"):
-        require_doable(quoted, behaviors)
+    for said in ('She said "no".', "Say «no».", "„Nein“, sagt sie."):
+        require_doable(DeliverMessage(name="m", place="101", message=said), behaviors)
+    unseen = DeliverMessage(name="m", place="101", message="no\u200bthing")
+    with pytest.raises(WrongInputError, match="only characters that can be seen"):
+        require_doable(unseen, behaviors)
     long = Escort(name="e", person="A" * 101, origin="101", destination="102")
     with pytest.raises(WrongInputError, match="person"):
         require_doable(long, behaviors)

@@ -12,14 +12,16 @@ export function eventsUntil(events: readonly FleetEvent[], time: number): readon
   return events.filter(({ at_s }) => at_s <= time);
 }
 
-/** The requests as they were told of last, in the order in which they came. */
+/**
+ * The requests as they were told of last, in the order in which they came. When they were expected is not kept: that
+ * changes with the plan and with the time.
+ */
 export function requestsAfter(events: readonly FleetEvent[]): readonly RequestView[] {
   const requests = new Map<string, RequestView>();
   for (const event of events) {
     if (event.type !== "request_changed") continue;
-    const { request: name, site, what, reason, robot, done_s } = event;
-    const expected = robot === null || done_s === null ? null : { robot, place: "", begins_s: event.at_s, done_s };
-    requests.set(name, { name, site, what, status: event.status as RequestStatus, reason, expected });
+    const { request: name, site, what, reason } = event;
+    requests.set(name, { name, site, what, status: event.status as RequestStatus, reason, expected: null, waits: null });
   }
   return [...requests.values()];
 }

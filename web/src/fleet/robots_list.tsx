@@ -10,6 +10,7 @@ import * as rest from "../wire/rest";
 import type { ErrandEnded, FleetRobot, FleetView } from "../wire/types";
 import type { FleetEvent } from "./fleet_past";
 import { isAtInWords, placeInWords, sureInWords, wholeClock } from "./fleet_words";
+import { useRefusal } from "./use_refusal";
 import { t } from "../words/words";
 
 interface RobotsListProps {
@@ -119,12 +120,12 @@ function FoldedDeeds(props: DeedsProps) {
 
 function Deeds({ fleet, robot, changed }: DeedsProps) {
   const [asked, setAsked] = useState<Asked>(null);
-  const [failure, setFailure] = useState("");
+  const [failure, setFailure] = useRefusal(JSON.stringify([robot.at_work, robot.out_of_service]), fleet);
   const name = robotName(robot.robot);
   const run = (deed: Promise<void>) => {
     setAsked(null);
     setFailure("");
-    void deed.then(changed, (error: Error) => setFailure(sentence(error.message)));
+    void deed.catch((error: Error) => setFailure(sentence(error.message))).then(changed);
   };
   const send = (place: string) => run(rest.sendRobot(fleet.site, robot.robot, place));
   return (

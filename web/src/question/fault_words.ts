@@ -43,9 +43,9 @@ export function faultInWords(about: About): string {
   });
 }
 
-/** A name of the scene or the tree as people say it. */
+/** A name of the scene or the tree as people say it, without what only tells it from others of the same words. */
 export function spoken(identifier: string): string {
-  return identifier.replaceAll(/[_-]/g, " ");
+  return identifier.replaceAll(/(?<=\w)--[0-9a-f]{8}(?![0-9A-Za-z_])/g, "").replaceAll(/[_-]/g, " ");
 }
 
 /** What robots call what they sense with. */

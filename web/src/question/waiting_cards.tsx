@@ -1,48 +1,16 @@
 // While a robot watches for help that was promised, or is being helped: calm cards, nothing to answer.
 import { helperName } from "../state/preferences";
 import { type Question, stopHelping, type Together } from "../state/questions";
-import type { Help } from "../wire/types";
 import { AskingPlace } from "./asking_place";
 import { TimeLeft, useSecondsUntil } from "./countdown";
-import { robotName, spoken } from "./fault_words";
+import { robotName } from "./fault_words";
 import { HelpCamera, seenBy } from "./help_camera";
 import { PausedNode } from "./paused_node";
+import { promised, watchedFor } from "./promised_words";
 import { PromiseButtons } from "./promise_buttons";
 import { t } from "../words/words";
 import { Told } from "../words/told";
 import "./waiting_cards.css";
-
-const PROMISES: Readonly<Record<Help, (part: string) => string>> = {
-  place: (part) => t("would place the {part}", { part }),
-  put_back: (part) => t("would put the {part} back on the table", { part }),
-  hand_over: (part) => t("would hand over the {part}", { part }),
-  clear_way: () => t("would clear the way"),
-  clear_view: () => t("would clear the view of the head camera"),
-  tell_place: () => t("know where it is"),
-  put_in: () => t("would put something into its basket"),
-  take_out: () => t("would take something out of its basket"),
-  charge: () => t("would plug it in"),
-  send_person: () => t("would tell who is to follow it to come"),
-};
-
-const EXPECTED: Readonly<Record<Help, (part: string) => string>> = {
-  place: (part) => t("The robot watches for the {part} at its place.", { part }),
-  put_back: (part) => t("The robot watches for the {part} on the table, within its reach.", { part }),
-  hand_over: (part) => t("The robot watches for the {part} between its fingers, and then grips it.", { part }),
-  clear_way: () => t("The robot watches until nothing is in the way of its arm."),
-  clear_view: () => t("The robot watches until its head camera sees the table."),
-  tell_place: () => t("The robot looks whether what its laser sees agrees with that."),
-  put_in: () => t("The robot waits until it feels that in its basket."),
-  take_out: () => t("The robot waits until it feels that its basket is lighter."),
-  charge: () => t("The robot waits until it feels current."),
-  send_person: () => t("The robot waits until it sees them beside it."),
-};
-
-/** A base sees with its laser, and has no arm. */
-function expected({ detection }: Question, help: Help, part: string): string {
-  if (help === "clear_way" && detection?.camera === "laser") return t("The robot watches until its way is free.");
-  return EXPECTED[help](part);
-}
 
 interface AwaitedHelpProps {
   question: Question;
@@ -52,7 +20,6 @@ interface AwaitedHelpProps {
 
 export function AwaitedHelpCard({ question, besideTree = false }: AwaitedHelpProps) {
   const { help } = question;
-  const part = spoken(question.object ?? question.name);
   return (
     <article class="waiting panel" aria-label={t("{robot} awaits help", { robot: robotName(question.robot) })}>
       <header class="waiting-head">
@@ -70,9 +37,9 @@ export function AwaitedHelpCard({ question, besideTree = false }: AwaitedHelpPro
       {help !== null && (
         <p>
           {help.helper === helperName.value
-            ? t("You said you {promise}.", { promise: PROMISES[help.help](part) })
-            : t("{helper} said they {promise}.", { helper: help.helper, promise: PROMISES[help.help](part) })}{" "}
-          {expected(question, help.help, part)}
+            ? t("You said you {promise}.", { promise: promised(question, help.help) })
+            : t("{helper} said they {promise}.", { helper: help.helper, promise: promised(question, help.help) })}{" "}
+          {watchedFor(question, help.help)}
         </p>
       )}
       <PromiseButtons question={question} />

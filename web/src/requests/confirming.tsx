@@ -43,6 +43,7 @@ export function Confirming({ readBack, busy, yes, no }: ConfirmingProps) {
           label={t("Say yes or no")}
           language={language === "en" ? ENGLISH : locale}
           heard={(words) => {
+            if (busy) return;
             const said = words.toLowerCase().replace(/[.,!?]/g, "").trim();
             if (YES.includes(said)) yes();
             else if (NO.includes(said)) no();

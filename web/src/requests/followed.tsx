@@ -5,7 +5,8 @@ import { may } from "../state/access";
 import * as rest from "../wire/rest";
 import type { RequestView } from "../wire/types";
 import { said } from "./places";
-import { isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "./request_words";
+import { isOpenEnded, isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "./request_words";
+import { Waits } from "./waits";
 import { type SiteClock, when } from "./when";
 import { t } from "../words/words";
 import { Told } from "../words/told";
@@ -14,9 +15,11 @@ interface FollowedProps {
   request: RequestView;
   clock: SiteClock;
   changed: () => void;
+  /** At whose touch screen. */
+  at?: string;
 }
 
-export function Followed({ request, clock, changed }: FollowedProps) {
+export function Followed({ request, clock, changed, at }: FollowedProps) {
   const [failure, setFailure] = useState("");
   const heading = useRef<HTMLHeadingElement>(null);
   useEffect(() => heading.current?.focus(), [request.name]);
@@ -35,6 +38,9 @@ export function Followed({ request, clock, changed }: FollowedProps) {
         </span>
       </p>
       <p>{soon(request, clock)}</p>
+      <div role="status">
+        <Waits request={request} at={at} />
+      </div>
       {reason !== null && <p class="small"><Told text={`${reason.charAt(0).toUpperCase() + reason.slice(1)}.`} /></p>}
       <p class="mistake" role="alert">
         {failure}
@@ -53,10 +59,10 @@ export function soon(request: RequestView, clock: SiteClock): string {
   const { expected, status } = request;
   if (isOver(request)) return OVER[status] ?? "";
   if (expected === null) return t("When it will be done is not known yet.");
-  return t("{robot} is expected to be done with it {when}.", {
-    robot: robotName(expected.robot),
-    when: when(expected.done_s, clock, new Date()),
-  });
+  const said = { robot: robotName(expected.robot), when: when(expected.done_s, clock, new Date()) };
+  return isOpenEnded(request, clock.now)
+    ? t("{robot} is expected to be done with it at the earliest {when}.", said)
+    : t("{robot} is expected to be done with it {when}.", said);
 }
 
 const OVER: Partial<Record<RequestView["status"], string>> = {

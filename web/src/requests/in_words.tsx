@@ -12,15 +12,17 @@ interface InWordsProps {
   /** At whose touch screen; null anywhere else. */
   robot: string | null;
   example: string;
+  /** What is typed, which is kept elsewhere: until it is booked nobody is to type it again. */
+  words: string;
+  typed: (words: string) => void;
   /** Both from the service: what it has understood, and how it reads that back. */
   understood: (request: RequestDocument, readBack: string) => void;
 }
 
 const LONGEST = 500;
 
-export function InWords({ site, robot, example, understood }: InWordsProps) {
+export function InWords({ site, robot, example, words, typed, understood }: InWordsProps) {
   const id = useId();
-  const [words, setWords] = useState("");
   const [question, setQuestion] = useState("");
   const [busy, setBusy] = useState(false);
   const say = async (said: string) => {
@@ -29,10 +31,7 @@ export function InWords({ site, robot, example, understood }: InWordsProps) {
     try {
       const found = await rest.understandRequest(site, said, robot, timeOf(new Date()));
       setQuestion(found.question ?? "");
-      if (found.request !== null && found.read_back !== null) {
-        setWords("");
-        understood(found.request, found.read_back);
-      }
+      if (found.request !== null && found.read_back !== null) understood(found.request, found.read_back);
     } catch (error) {
       setQuestion(error instanceof Error ? error.message : String(error));
     } finally {
@@ -55,7 +54,7 @@ export function InWords({ site, robot, example, understood }: InWordsProps) {
           autocomplete="off"
           maxLength={LONGEST}
           value={words}
-          onInput={(event) => setWords(event.currentTarget.value)}
+          onInput={(event) => typed(event.currentTarget.value)}
         />
         <button class="button" disabled={busy || words.trim() === ""}>
           {t("Say it")}
@@ -63,7 +62,7 @@ export function InWords({ site, robot, example, understood }: InWordsProps) {
         <SpeakButton
           label={t("Speak")}
           heard={(said) => {
-            setWords(said);
+            typed(said);
             void say(said);
           }}
         />

@@ -2,6 +2,7 @@
 import { robotName } from "../question/fault_words";
 import type { RequestStatus, RequestView } from "../wire/types";
 import { t, tn } from "../words/words";
+import { isPointedAt } from "./wish";
 
 export const STATUS_WORDS: Readonly<Record<RequestStatus, string>> = {
   booked: t("Booked"),
@@ -38,7 +39,9 @@ export function wanted({ what }: RequestView, named = (place: string) => place):
   const at = (field: string) => named(said(field));
   switch (what.kind) {
     case "transport":
-      return t("Bring {what} from {from} to {to}", { what: said("what"), from: at("origin"), to: at("destination") });
+      return isPointedAt(said("what"))
+        ? t("Bring this from {from} to {to}", { from: at("origin"), to: at("destination") })
+        : t("Bring {what} from {from} to {to}", { what: said("what"), from: at("origin"), to: at("destination") });
     case "deliver_message":
       return t("Tell “{message}” at {place}", { message: said("message"), place: at("place") });
     case "escort":
@@ -56,7 +59,13 @@ export function wanted({ what }: RequestView, named = (place: string) => place):
 export function expectation(request: RequestView, now: number | undefined): string {
   const { expected } = request;
   if (isOver(request) || expected === null || now === undefined) return "";
-  return t("{robot}, done {within}", { robot: robotName(expected.robot), within: within(expected.done_s - now) });
+  const when = { robot: robotName(expected.robot), within: within(expected.done_s - now) };
+  return isOpenEnded(request, now) ? t("{robot}, done {within} at the earliest", when) : t("{robot}, done {within}", when);
+}
+
+/** Whether nobody can say until when: its robot is late already, or waits for people. */
+export function isOpenEnded({ expected, waits }: RequestView, now: number): boolean {
+  return waits !== null || (expected !== null && (expected.late_s > 0 || expected.done_s < now));
 }
 
 /** "in less than a minute", "in about 4 minutes" */

@@ -10,6 +10,7 @@ import { Followed } from "./followed";
 import { expectation, isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "./request_words";
 import { followed, type RequestDocument, useAsking } from "./use_asking";
 import { useKinds } from "./use_kinds";
+import { Waits } from "./waits";
 import { useRequests } from "./use_requests";
 import { WishForm } from "./wish_form";
 import { t } from "../words/words";
@@ -126,6 +127,7 @@ function Row({ request, now, changed }: { request: RequestView; now: number | un
       <span class="request-wanted">
         <strong>{wanted(request)}</strong>
         <span class="small quiet">{expectation(request, now)}</span>
+        <Waits request={request} />
         {reason !== null && <span class="small"><Told text={`${reason.charAt(0).toUpperCase() + reason.slice(1)}.`} /></span>}
         {failure !== "" && (
           <span class="mistake small" role="alert">

@@ -29,7 +29,7 @@ export const NO_WISH: Wish = {
 
 const LAST_S = 1e8;
 const MOST_MINUTES = 1_000_000;
-const UNLIKE_CHARS = 4;
+const UNLIKE_CHARS = 8;
 const LONGEST_NAME = 40;
 
 /** What is missing at `now` of the building's clock, in a sentence; empty where nothing is. */
@@ -65,7 +65,12 @@ function endsMissing({ origin, destination }: Wish): string {
   return origin === destination ? t("It is there already: choose another place.") : "";
 }
 
-/** What tells a request from others of the same words. */
+/** As robots say it, between quotation marks of their own: those in it are single ones. */
+export function sayable(text: string): string {
+  return text.replace(/[“”„‟«»"]/g, "'").trim();
+}
+
+/** What tells a request from others of the same words, and what robots do not say. */
 export function newName(): string {
   return crypto.randomUUID().slice(0, UNLIKE_CHARS);
 }
@@ -73,20 +78,28 @@ export function newName(): string {
 /** The request at `now` of the building's clock; `unlike` tells it from others of the same words. */
 export function requestOf(wish: Wish, now: number, unlike: string): Record<string, unknown> {
   const latest = wish.within === "" ? {} : { latest_s: now + 60 * Number(wish.within) };
-  const name = `${wordsOf(wish)}-${unlike}`;
+  const name = `${wordsOf(wish)}--${unlike}`;
   switch (wish.kind) {
     case "transport":
-      return { kind: wish.kind, name, what: wish.what.trim(), origin: wish.origin, destination: wish.destination, ...latest };
+      return { kind: wish.kind, name, what: sayable(wish.what), origin: wish.origin, destination: wish.destination, ...latest };
     case "deliver_message":
-      return { kind: wish.kind, name, message: wish.message.trim(), place: wish.place, ...latest };
+      return { kind: wish.kind, name, message: sayable(wish.message), place: wish.place, ...latest };
     case "go_to_room":
       return { kind: wish.kind, name, place: wish.place, ...latest };
     case "escort":
-      return { kind: wish.kind, name, person: wish.person.trim(), origin: wish.origin, destination: wish.destination, ...latest };
+      return { kind: wish.kind, name, person: sayable(wish.person), origin: wish.origin, destination: wish.destination, ...latest };
   }
 }
 
+/** What somebody brings who has only pointed at it: the console says so itself, in the words of its language. */
+export const THIS = "this";
+
+/** Whether a thing has no name but that. */
+export function isPointedAt(what: string): boolean {
+  return /^(this|that|it|these|those|them)$/i.test(what.trim());
+}
+
 function wordsOf({ kind, what }: Wish): string {
-  const words = kind === "transport" ? what.replace(/[^A-Za-z0-9]+/g, "_").replace(/^[^A-Za-z]+|_+$/g, "") : "";
+  const words = kind === "transport" && !isPointedAt(what) ? what.replace(/[^A-Za-z0-9]+/g, "_").replace(/^[^A-Za-z]+|_+$/g, "") : "";
   return words.slice(0, LONGEST_NAME) || { transport: "thing", deliver_message: "message", go_to_room: "visit", escort: "escort" }[kind];
 }

@@ -5,6 +5,7 @@ import { Confirming } from "./confirming";
 import { InWords } from "./in_words";
 import { byFloor, placeMeant, said } from "./places";
 import { Refused } from "./refused";
+import { Unanswered } from "./unanswered";
 import type { RequestDocument, UseAsking } from "./use_asking";
 import { type Kind, missing, newName, NO_WISH, requestOf, type Wish } from "./wish";
 import type { SiteClock } from "./when";
@@ -26,14 +27,16 @@ interface WishFormProps extends UseAsking {
 export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormProps) {
   const [wish, setWish] = useState<Wish>(NO_WISH);
   const [mistake, setMistake] = useState("");
+  const [words, setWords] = useState("");
   const [inWords, setInWords] = useState<{ request: RequestDocument; readBack: string } | null>(null);
   const list = useId();
   const fill = (change: Partial<Wish>) => {
     setWish({ ...wish, ...change });
     setMistake("");
-    if (asking.phase === "refused") forget();
+    if (asking.phase === "refused" || asking.phase === "unknown") forget();
   };
   const send = async () => {
+    if (asking.phase === "unknown") return ask(asking.request);
     const wanted = withPlaces(wish, fleet.places);
     const wrong = missing(wanted.wish, fleet.now_s) || wanted.mistake;
     setMistake(wrong);
@@ -47,6 +50,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
     setSeen(booked);
     if (booked !== null) {
       setWish({ ...NO_WISH, kind: wish.kind });
+      setWords("");
       setInWords(null);
     }
   }
@@ -58,6 +62,8 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
           site={fleet.site}
           robot={null}
           example={exampleFor(fleet.places)}
+          words={words}
+          typed={setWords}
           understood={(request, readBack) => {
             forget();
             setInWords({ request, readBack });
@@ -140,6 +146,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
           </button>
         </div>
       </form>
+      <Unanswered asking={asking} ask={(request) => void ask(request)} />
       {asking.phase === "refused" && <Refused refused={asking} clock={clock} ask={(request) => void ask(request)} />}
     </section>
   );

@@ -1,31 +1,33 @@
 // One thing that is asked at a robot's touch screen: a text, or a place.
 import { useEffect, useId, useRef, useState } from "preact/hooks";
-import type { Kind } from "../requests/wish";
+import { type Kind, THIS } from "../requests/wish";
 import { PlacePad } from "./place_pad";
-import { type Asked, nextStep, type Step } from "./steps";
+import { type Asked, isText, nextStep, type Step } from "./steps";
 import { t } from "../words/words";
 
 interface StepFormProps {
   asked: Asked;
   places: readonly string[];
   here: string | null;
+  /** What was typed for it before, and is not to be lost. */
+  typed: string;
   answered: (asked: Asked) => void;
 }
 
-export function StepForm({ asked, places, here, answered }: StepFormProps) {
+export function StepForm({ asked, places, here, typed, answered }: StepFormProps) {
   const step = nextStep(asked);
   const heading = useRef<HTMLHeadingElement>(null);
   useEffect(() => heading.current?.focus(), [step]);
   if (step === null) return null;
   const answer = (value: string) => answered({ ...asked, answers: [...asked.answers, value] });
-  const isText = step === "what" || step === "message";
   return (
     <>
       <h2 ref={heading} tabIndex={-1}>
         {questionOf(step, asked.kind)}
       </h2>
-      {isText && <TextAnswer key={step} step={step} answer={answer} />}
-      {!isText && (
+      {isText(step) ? (
+        <TextAnswer key={step} step={step} typed={typed} answer={answer} />
+      ) : (
         <PlacePad
           key={step}
           places={step === "destination" && asked.kind === "transport" ? places.filter((each) => each !== asked.answers[1]) : places}
@@ -55,9 +57,15 @@ function questionOf(step: Step, kind: Kind): string {
 
 const LONGEST = 300;
 
-function TextAnswer({ step, answer }: { step: "what" | "message"; answer: (text: string) => void }) {
+interface TextAnswerProps {
+  step: "what" | "message";
+  typed: string;
+  answer: (text: string) => void;
+}
+
+function TextAnswer({ step, typed, answer }: TextAnswerProps) {
   const id = useId();
-  const [text, setText] = useState("");
+  const [text, setText] = useState(typed);
   return (
     <form
       class="touch-text"
@@ -67,7 +75,7 @@ function TextAnswer({ step, answer }: { step: "what" | "message"; answer: (text:
       }}
     >
       {step === "what" && (
-        <button class="button touch-button" type="button" onClick={() => answer("this")}>
+        <button class="button touch-button" type="button" onClick={() => answer(THIS)}>
           {t("This, which I have here")}
         </button>
       )}

@@ -6,6 +6,7 @@ import { Confirming } from "../requests/confirming";
 import { Followed } from "../requests/followed";
 import { InWords } from "../requests/in_words";
 import { Refused, refusedInShort } from "../requests/refused";
+import { notKnown, Unanswered } from "../requests/unanswered";
 import { fleets } from "../requests/fleets";
 import { said } from "../requests/places";
 import { type Asking, followed, type RequestDocument, useAsking } from "../requests/use_asking";
@@ -18,7 +19,7 @@ import type { AskedRobotView, SiteView } from "../wire/types";
 import { useHasVoice, useSaidAloud } from "./said_aloud";
 import { type Service, serviceOf } from "./service";
 import { StepForm } from "./step_form";
-import { type Asked, nextStep, readBackOf, wishOf } from "./steps";
+import { type Asked, nextStep, readBackOf, textOf, wishOf } from "./steps";
 import { useIdle } from "./use_idle";
 import { useRobot } from "./use_robot";
 import "../requests/requests.css";
@@ -58,6 +59,15 @@ export function TouchView({ robot: name }: { robot: string }) {
   );
 }
 
+/** In words, or for a kind of request: kept until it is booked, or whoever has typed it has gone. */
+const NOTHING_TYPED: Readonly<Record<Kind | "words", string>> = {
+  words: "",
+  transport: "",
+  deliver_message: "",
+  escort: "",
+  go_to_room: "",
+};
+
 interface ToConfirm {
   request: RequestDocument;
   readBack: string;
@@ -68,19 +78,28 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
   const { requests, fleet, again } = useRequests(site.id);
   const [asked, setAsked] = useState<Asked | null>(null);
   const [confirmed, setConfirmed] = useState<ToConfirm | null>(null);
-  const back = () => {
+  const [typed, setTyped] = useState(NOTHING_TYPED);
+  const change = (next: Asked | null) => {
     forget();
-    setAsked(null);
+    setAsked(next);
     setConfirmed(null);
+  };
+  const back = () => {
+    change(null);
+    setTyped(NOTHING_TYPED);
   };
   const booked = followed(asking, requests);
   const goesOn = booked !== null && !isOver(booked);
-  useIdle((asked !== null || confirmed !== null) && !goesOn, IDLE_MS, back);
+  const isSending = asking.phase === "sending";
+  const isTouched = asked !== null || confirmed !== null || typed !== NOTHING_TYPED;
+  useIdle(isTouched && !goesOn && !isSending, IDLE_MS, back);
   useSaidAloud(heard(asking, confirmed?.readBack ?? ""));
   if (fleet === null) return <p class="quiet">{t("Loading …")}</p>;
   const clock = { now: fleet.now_s, speed: site.speed };
   const answer = (next: Asked) => {
     setAsked(next);
+    const text = textOf(next);
+    if (text !== null) setTyped({ ...typed, [next.kind]: text });
     if (nextStep(next) !== null) return;
     const wish = wishOf(next, robot.here);
     setConfirmed({ request: requestOf(wish, fleet.now_s, newName()), readBack: readBackOf(wish) });
@@ -96,23 +115,31 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
           site={site.id}
           robot={robot.robot}
           example={exampleFor(fleet.places, robot.here)}
+          words={typed.words}
+          typed={(words) => setTyped({ ...typed, words })}
           understood={(request, readBack) => setConfirmed({ request, readBack })}
         />
       )}
       {asked !== null && confirmed === null && (
-        <StepForm asked={asked} places={fleet.places} here={robot.here} answered={answer} />
+        <StepForm asked={asked} places={fleet.places} here={robot.here} typed={typed[asked.kind]} answered={answer} />
       )}
-      {confirmed !== null && (asking.phase === "nothing" || asking.phase === "sending") && (
+      {confirmed !== null && (asking.phase === "nothing" || isSending) && (
         <Confirming
           readBack={confirmed.readBack}
-          busy={asking.phase === "sending"}
+          busy={isSending}
           yes={() => void ask(confirmed.request).then(again)}
-          no={back}
+          no={() => change(null)}
         />
       )}
+      <Unanswered asking={asking} ask={(request) => void ask(request).then(again)} />
       {asking.phase === "refused" && <Refused refused={asking} clock={clock} ask={(request) => void ask(request).then(again)} />}
-      {booked !== null && <Followed request={booked} clock={clock} changed={again} />}
-      {!isStart && !(confirmed !== null && asking.phase === "nothing") && (
+      {asking.phase === "refused" && (
+        <button class="button touch-button" type="button" onClick={() => change(asked === null ? null : { ...asked, answers: [] })}>
+          {t("Ask for it in other words")}
+        </button>
+      )}
+      {booked !== null && <Followed request={booked} clock={clock} changed={again} at={robot.robot} />}
+      {!isStart && !isSending && !(confirmed !== null && asking.phase === "nothing") && (
         <button class="button touch-button" type="button" onClick={back}>
           {asking.phase === "booked" ? t("Ask for something else") : t("Start over")}
         </button>
@@ -149,6 +176,7 @@ function Start({ robot, service, choose }: StartProps) {
 
 function heard(asking: Asking, readBack: string): string {
   if (asking.phase === "booked") return t("All right. {request}.", { request: wanted(asking.request, said) });
+  if (asking.phase === "unknown") return notKnown();
   return asking.phase === "refused" ? refusedInShort(asking.by) : readBack;
 }
 

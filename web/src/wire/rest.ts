@@ -58,6 +58,8 @@ export class Refusal extends Error {
     readonly nextPossible: readonly number[] | null = null,
     /** Why a request cannot be met. */
     readonly why: string | null = null,
+    /** It may come once more, unchanged: nothing is said of what is asked for. */
+    readonly later: boolean = false,
   ) {
     super(errors.length > 0 ? errors.join("\n") : detail);
   }
@@ -84,11 +86,12 @@ export async function call<T>(
   method: string,
   path: string,
   body?: unknown,
-  { type = JSON_TYPE, signal }: { type?: string; signal?: AbortSignal } = {},
+  { type = JSON_TYPE, signal, key }: { type?: string; signal?: AbortSignal; key?: string } = {},
 ): Promise<T> {
-  const init: RequestInit = signal === undefined ? { method } : { method, signal };
+  const headers: Record<string, string> = key === undefined ? {} : { "Idempotency-Key": `"${key}"` };
+  const init: RequestInit = signal === undefined ? { method, headers } : { method, headers, signal };
   if (body !== undefined) {
-    init.headers = { "Content-Type": type };
+    headers["Content-Type"] = type;
     init.body = type === JSON_TYPE ? JSON.stringify(body) : (body as BodyInit);
   }
   const response = await fetch(path, init).catch(() => {
@@ -109,10 +112,12 @@ async function read(path: string): Promise<Response> {
 }
 
 async function refusal(response: Response): Promise<Refusal> {
+  const { status, statusText } = response;
+  const later = response.headers.has("Retry-After");
   const problem = (await response.json().catch(() => null)) as ProblemDocument | null;
-  if (problem === null) return new Refusal(response.status, response.statusText);
+  if (problem === null) return new Refusal(status, statusText, [], null, null, null, later);
   const { detail, errors, answered_by, next_possible_s, why } = problem;
-  return new Refusal(response.status, detail, errors ?? [], answered_by ?? null, next_possible_s ?? null, why ?? null);
+  return new Refusal(status, detail, errors ?? [], answered_by ?? null, next_possible_s ?? null, why ?? null, later);
 }
 
 export const segment = encodeURIComponent;
@@ -228,7 +233,10 @@ export const robots = () => call<RobotView[]>("GET", "/api/robots");
 const atSite = (site: string, name = "") =>
   `/api/requests${name === "" ? "" : `/${name.split("/").map(segment).join("/")}`}?site=${segment(site)}`;
 export const requests = (site: string) => call<RequestView[]>("GET", atSite(site));
-export const makeRequest = (site: string, request: object) => call<RequestView>("POST", atSite(site), request);
+const LONGEST_MS = 10_000;
+/** Under its `key` a request is booked once, however often it comes. */
+export const makeRequest = (site: string, request: object, key: string) =>
+  call<RequestView>("POST", atSite(site), request, { key, signal: AbortSignal.timeout(LONGEST_MS) });
 export const cancelRequest = (site: string, name: string) => call<void>("DELETE", atSite(site, name));
 const ofFleet = (site: string, what = "") => `/api/sites/${segment(site)}/fleet${what}`;
 const ofRobot = (site: string, robot: string, what: string) => ofFleet(site, `/robots/${segment(robot)}/${what}`);

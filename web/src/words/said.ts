@@ -94,11 +94,12 @@ function phrase(text: string): string | null {
   return null;
 }
 
-/** `rest` is a clause in turn; of what else fills a field only numbers are written otherwise. */
+/** `rest` is a clause in turn, and a part may be called by words of the service's own; of what else fills a field only numbers are written otherwise. */
 function mapped(groups: Readonly<Record<string, string>>): Record<string, string> {
   return Object.fromEntries(
     Object.entries(groups).map(([name, value]) => {
       if (name === "rest") return [name, phrase(value) ?? value];
+      if (name === "part") return [name, texts.get(value) ?? value];
       const decimals = /^-?\d+\.(\d+)$/.exec(value)?.[1];
       return [name, decimals === undefined ? value : decimal(Number(value), decimals.length)];
     }),

@@ -1,0 +1,57 @@
+"""What robots call the things that they bring, and what requests are called that nobody names."""
+
+import re
+from typing import TYPE_CHECKING
+from zlib import crc32
+
+from mend.dialogue.spoken import NAMELESS
+from mend.fleet.requests import Transport
+from mend.tasks.plain_letters import plain_letters
+
+if TYPE_CHECKING:
+    from mend.fleet.dispatch.booking import AnyRequest
+
+_ARTICLE = re.compile(r"^(the|a|an)\s+", re.IGNORECASE)
+_NO_WORD = re.compile(r"[^A-Za-z0-9]+")
+_MOST_OF_WHAT = 31
+_POINTED_AT = frozenset(("this", "that", "it", "these", "those", "them"))
+"""What only whoever stands before it knows."""
+_MADE = re.compile(r"--[0-9a-f]{8}(/[0-9]+)?$")
+"""Ends the name of a request that Mend or its console has made up: nobody knows it by that."""
+
+
+def item_of(what: str, booking: str) -> str:
+    """What robots call a thing: as a person does, as far as names go, and each its own."""
+    asked, mark = _plain(booking), f"{crc32(booking.encode()):08x}"
+    if _is_pointed_at(what):
+        return f"{NAMELESS}--{mark}"
+    words = _words(what)
+    words = words if words[:1].isalpha() else f"item_{words}".rstrip("_")
+    if words == asked:
+        return words
+    if _MADE.search(booking) or f"_{asked}_" in f"_{words}_":
+        # "The cup of tea tea" nobody would say: such a mark is not spoken.
+        return f"{words}--{mark}"
+    if len(asked) > _MOST_OF_WHAT:
+        asked = f"{asked[: _MOST_OF_WHAT - 9]}_{mark}"
+    return f"{words}-{asked}"
+
+
+def made_name(request: "AnyRequest", mark: str) -> str:
+    """A name for what somebody asks for without one; `mark`: 8 digits that no other has."""
+    words = ""
+    if isinstance(request, Transport) and not _is_pointed_at(request.what):
+        words = _words(request.what)
+    return f"{words if words[:1].isalpha() else request.kind}--{mark}"
+
+
+def _is_pointed_at(what: str) -> bool:
+    return what.strip().casefold() in _POINTED_AT
+
+
+def _words(what: str) -> str:
+    return _plain(_ARTICLE.sub("", what.strip()))[:_MOST_OF_WHAT].strip("_")
+
+
+def _plain(text: str) -> str:
+    return _NO_WORD.sub("_", plain_letters(text))
