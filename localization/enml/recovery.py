@@ -38,7 +38,7 @@ _SCANS_POLISHED = 3
 _SCANS_WEIGHED = 6
 _LEAST_DOUBT = 0.5
 """The share of the lead that is always needed, and all that is where the robot is followed."""
-_PIECES = 8
+_PIECES = 10
 """So many pieces of work an update does..."""
 _RAYS_PER_PIECE_M = 850_000.0
 """... of so many metres of rays over the map, two or three milliseconds..."""
