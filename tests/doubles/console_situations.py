@@ -33,6 +33,7 @@ from mend.tasks.scenario import Person
 
 STEAL = Intervention.model_validate({"act": "steal", "object": "green_leg"})
 PATIENCE_MS = 60_000
+MOST_TRIES = 20
 
 
 async def ask(service: Service, world: str = "tabletop") -> UUID:
@@ -511,6 +512,41 @@ async def touch_refused(service: Service, open_page: OpenPage) -> Page:
     return page
 
 
+async def touch_unanswered(service: Service, open_page: OpenPage) -> Page:
+    """Something is wanted there, and no answer comes to that."""
+    page = await touch_screen(service, open_page)
+    await page.get_by_label("Say it in words").fill("come to F8 806")
+    await page.get_by_role("button", name="Say it").click()
+    await page.clock.install()
+    await page.route(
+        "**/api/requests?*",
+        lambda route: route.abort() if route.request.method == "POST" else route.continue_(),
+    )
+    await page.get_by_role("button", name="Yes, that is right").click()
+    unknown = page.get_by_text("I do not know whether that was booked.")
+    for _ in range(MOST_TRIES):
+        await expect(page.get_by_text("I try once more").or_(unknown)).to_be_visible()
+        if await unknown.is_visible():
+            break
+        await page.clock.run_for(5_000)
+    await expect(unknown).to_be_visible()
+    return page
+
+
+async def waited_for(service: Service, open_page: OpenPage) -> Page:
+    """Something was asked for at a touch screen, whose robot waits for somebody to put it in."""
+    site = await open_office_with_fleet(service, 20.0, answers="live")
+    robot = next(iter((await service.fleets.fleet(site)).dispatcher.fleet.robots))
+    page = await open_page(f"/robots/{robot}/ask")
+    words = page.get_by_label("Say it in words")
+    await words.fill("bring the tea from 103 to 106", timeout=PATIENCE_MS)
+    await page.get_by_role("button", name="Say it").click()
+    await page.get_by_role("button", name="Yes, that is right").click()
+    mine = page.get_by_role("region", name="Your request")
+    await expect(mine).to_contain_text("I wait for somebody to help me", timeout=PATIENCE_MS)
+    return page
+
+
 async def booked_request(service: Service, open_page: OpenPage) -> Page:
     """Something was asked for on the booking page, and is followed."""
     await open_office_with_fleet(service)
@@ -574,6 +610,8 @@ SITUATIONS: dict[str, Situation] = {
         touch_screen,
         touch_place,
         touch_refused,
+        touch_unanswered,
+        waited_for,
         fleet,
         settings,
         question_in_german,
