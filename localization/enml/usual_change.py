@@ -1,11 +1,13 @@
 """How much changes from scan to scan where nobody is carried: learned on the way."""
 
-from math import lgamma, log, log1p, pi
+from math import exp, lgamma, log, log1p, pi
 
 from mend.localization.enml.parameters import EnmlParameters
 
 _LEAST_SPREAD = 0.05
 """Where nothing ever changes a little does: points are few."""
+_SURPRISES, _WIDTH = 0.05, 2.0
+"""So often something else changes, by any share: somebody steps by, or a chair is moved."""
 _FIRST_SCANS = 8.0
 """What the parameters say of it counts for so many scans."""
 
@@ -14,7 +16,7 @@ class UsualChange:
     """Shares that change, less what is recognized, as normal of unknown mean and variance.
 
     How likely the next one is follows a t distribution (Gelman et al., "Bayesian Data Analysis",
-    section 3.2), of all before it, the latest more. So a change is judged by what is usual around
+    section 3.2), of all before it, the latest more, but for a few surprises. So a change is judged by what is usual around
     the robot: crowds and bushes are other than walls (Lorden and Pollak 2005, "Nonanticipating
     estimation applied to sequential analysis and changepoint detection").
     """
@@ -42,4 +44,5 @@ class UsualChange:
         scale = self._variance * (1.0 + 1.0 / self._scans)
         norm = lgamma((degrees + 1.0) / 2.0) - lgamma(degrees / 2.0)
         off = (change - self._mean) ** 2 / (degrees * scale)
-        return norm - 0.5 * log(degrees * pi * scale) - 0.5 * (degrees + 1.0) * log1p(off)
+        told = norm - 0.5 * log(degrees * pi * scale) - 0.5 * (degrees + 1.0) * log1p(off)
+        return log((1.0 - _SURPRISES) * exp(told) + _SURPRISES / _WIDTH)
