@@ -44,8 +44,7 @@ class LostMeasure:
         its = self._parameters
         news = min(driven_m / its.news_after_m, 1.0)
         self._since += its.carried_per_m * driven_m
-        most = its.strange_tells_at_most
-        self._since *= exp(news * max(min(strange, most), -most))
+        self._since *= exp(news * max(min(strange, its.tells_at_most), -its.familiar_tells_at_most))
         if strange <= 0.0:
             self._before, self._since = self._before + self._since, 0.0
         told = exp(news * max(min(elsewhere, its.tells_at_most), -its.fitting_tells_at_most))

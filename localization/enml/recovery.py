@@ -38,10 +38,11 @@ _SCANS_POLISHED = 3
 _SCANS_WEIGHED = 6
 _LEAST_DOUBT = 0.5
 """The share of the lead that is always needed, and all that is where the robot is followed."""
-_PIECES = 10
-"""So many pieces of work an update does..."""
+_PIECES_PER_M = 20.0
+_FEWEST_PIECES, _MOST_PIECES = 10, 16
+"""So many pieces of work an update does: more where updates are farther apart."""
 _RAYS_PER_PIECE_M = 850_000.0
-"""... of so many metres of rays over the map, two or three milliseconds..."""
+"""So many metres of rays over the map are a piece of work, two or three milliseconds..."""
 _RAY_BEGINS_M = 20.0
 """... and a ray takes as long as if it were so much longer (ours: on 12 maps)."""
 
@@ -106,11 +107,6 @@ class Recovery:
         """Whether a search goes on."""
         return self._work is not None
 
-    @property
-    def suspects_elsewhere(self) -> bool:
-        """Whether the last search has found a clearly likelier place, which another may confirm."""
-        return self._won is not None
-
     def open_places(self, episode: Episode) -> list[Found]:
         """The places that explain what is seen and are hardly worse than the best, best first."""
         ranked = _ranked(done(self._weigh(self._open, looks_of(episode, _SCANS_WEIGHED))))
@@ -135,12 +131,14 @@ class Recovery:
         self.stop()
         self._work = self._search(_Evidence.of(episode, followed, path_m, drifted))
 
-    def go_on(self, *, to_its_end: bool = False) -> Found | None:
+    def go_on(self, moved_m: float, *, to_its_end: bool = False) -> Found | None:
         """Do what fits into one update; at the search's end where the robot is, if that is clear.
 
-        Nothing where no search goes on.
+        `moved_m` is how far the robot has driven since the update before. Nothing where no search
+        goes on.
         """
-        for _ in count() if to_its_end else range(_PIECES):
+        some = int(np.clip(_PIECES_PER_M * moved_m, _FEWEST_PIECES, _MOST_PIECES))
+        for _ in count() if to_its_end else range(some):
             if self._work is None:
                 break
             try:
@@ -178,7 +176,7 @@ class Recovery:
         """The places of the lattice that look right, each where what is seen fits best."""
         wide = yield from self._lattice.candidates(seen.points, self._everywhere, _CANDIDATES)
         merits = np.zeros(len(wide))
-        for piece in self._portions(wide, seen.glance, 2):
+        for piece in self._portions(wide, seen.glance):
             glances(self._grid, seen.glance, wide[piece], merits[piece])
             yield
         places = wide[np.argsort(-merits, kind="stable")[:_CLIMBERS]]
