@@ -83,8 +83,7 @@ class BookingDesk:
         answer = self._take_on(without, self._item(name, request), f"'{name}' is wanted otherwise")
         if answer is None:
             booking.request, booking.attempts, booking.reason = request, 0, None
-            self._state.settle()
-        return answer or Answer(True, self._expected(name))
+        return answer or self._promised(name)
 
     def require_free(self, name: str) -> None:
         """Raises `ConflictError` where there is something of that name that was not refused."""
@@ -129,8 +128,16 @@ class BookingDesk:
             booking.status, booking.reason = RequestStatus.REFUSED, answer.why
             booking.closed_s = self._state.fleet.now_s
             return answer
+        return self._promised(name)
+
+    def _promised(self, name: str) -> Answer:
+        """It is booked, with when it is expected, which is kept to from now on."""
         self._state.settle()
-        return Answer(True, self._expected(name))
+        expected = self._expected(name)
+        if expected is not None:
+            due_s = expected.done_s + self._state.policy.slack_s
+            self._state.fleet.promise(name, due_s)
+        return Answer(True, expected)
 
     def _take_on(self, fleet: RunningFleet, item: Item, why: str) -> Answer | None:
         """Go on as that fleet with one more item. Where it has no place, stay as it is, and say why

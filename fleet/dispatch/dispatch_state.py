@@ -66,7 +66,11 @@ class DispatchState:
             tuple(place(each) for each in setting.transfer_places), service_s=setting.transfer_s
         )
         names = [each.name for each in self.building.graph.places]
-        weights = Weights(distance=setting.per_metre, completion=setting.per_second)
+        weights = Weights(
+            distance=setting.per_metre,
+            completion=setting.per_second,
+            lateness=setting.per_second_late,
+        )
         return Problem(self.building.name, tuple(names), travel, robots, (), transfers, weights)
 
     def apply(

@@ -41,10 +41,10 @@ class Policy(StrictModel):
     A stop that failed is tried again after `retry_after_s`, `max_attempts` times in all. What has
     no place in the plan is tried again every `retry_waiting_s`, for `patience_s` at most. What has
     no latest moment of its own has to be done within `longest_s`. What robots found is forgotten
-    after `forget_s`. Robots leave `reserve_s` earlier than they must. What recurs is planned
-    `horizon_s` ahead, but not more than the next `occurrences`. The next possible time lasts
-    `grace_s` longer than it must. So many closed requests and changes of plans are kept as `kept`
-    says.
+    after `forget_s`. What is done up to `slack_s` later than was said is not late. Robots leave
+    `reserve_s` earlier than they must. What recurs is planned `horizon_s` ahead, but not more than
+    the next `occurrences`. The next possible time lasts `grace_s` longer than it must. So many
+    closed requests and changes of plans are kept as `kept` says.
     """
 
     max_attempts: Annotated[int, Field(ge=1, le=100)] = 3
@@ -53,6 +53,7 @@ class Policy(StrictModel):
     patience_s: Span = 4 * 3600.0
     longest_s: Span = 24 * 3600.0
     forget_s: Span = 1800.0
+    slack_s: Span = 300.0
     reserve_s: Handling = 30.0
     horizon_s: Span = 24 * 3600.0
     occurrences: Annotated[int, Field(ge=1, le=1000)] = 12
@@ -68,7 +69,9 @@ class FleetSetting(StrictModel):
     `handling_s`: what it takes to give or take something, or to tell a message; `transfer_s`: to
     leave an item for another robot at one of the `transfer_places`, or to take it from there.
     `per_metre` and `per_second` weigh what is driven against how late everything is done: a metre
-    takes a robot a second, which counts as much as one that somebody waits.
+    takes a robot a second, which counts as much as one that somebody waits. `per_second_late`
+    weighs, besides, how much later something is done than it was said to be when it was booked, and
+    a slack (`Policy.slack_s`): nobody is put off time and again for who asks later.
     """
 
     robots: Annotated[tuple[ServiceRobot, ...], Field(min_length=1)]
@@ -79,4 +82,5 @@ class FleetSetting(StrictModel):
     transfer_s: Handling = 20.0
     per_metre: Weight = 1.0
     per_second: Weight = 1.0
+    per_second_late: Weight = 10.0
     policy: Policy = Policy()

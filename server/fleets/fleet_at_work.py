@@ -382,7 +382,7 @@ class FleetAtWork:
     async def cancel(self, name: str, author: ev.Author | None) -> RequestView | None:
         """What was asked for is not wanted any more. Raises as `Dispatcher.cancel`."""
         async with self._book.told(author, name):
-            return self.dispatcher.cancel(name, self.now_s)
+            return await asyncio.to_thread(self.dispatcher.cancel, name, self.now_s)
 
     async def break_off_errands(self) -> None:
         """No robot goes anywhere without a leg; over once those have ended that had begun."""

@@ -27,13 +27,14 @@ def item_of(what: str, booking: str) -> str:
         return f"{NAMELESS}--{mark}"
     words = _words(what)
     words = words if words[:1].isalpha() else f"item_{words}".rstrip("_")
-    if words == asked:
+    if words == asked == booking:
         return words
     if _MADE.search(booking) or f"_{asked}_" in f"_{words}_":
         # "The cup of tea tea" nobody would say: such a mark is not spoken.
         return f"{words}--{mark}"
-    if len(asked) > _MOST_OF_WHAT:
-        asked = f"{asked[: _MOST_OF_WHAT - 9]}_{mark}"
+    if asked != booking or len(asked) > _MOST_OF_WHAT:
+        # Others may be called alike but for what names have not.
+        return f"{words}-{asked[: _MOST_OF_WHAT - 10]}--{mark}"
     return f"{words}-{asked}"
 
 
@@ -46,7 +47,8 @@ def made_name(request: "AnyRequest", mark: str) -> str:
 
 
 def _is_pointed_at(what: str) -> bool:
-    return what.strip().casefold() in _POINTED_AT
+    words = _plain(what).strip("_").casefold().split("_")
+    return words[0] in _POINTED_AT and words[1:] in ([], ["one"], ["ones"], ["thing"], ["things"])
 
 
 def _words(what: str) -> str:

@@ -6,7 +6,7 @@ routes of those robots only whose plan rested on what is not so any more.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from math import inf
 
@@ -232,6 +232,12 @@ class RunningFleet(KnownFleet):
         state.items.append(TrackedItem(item))
         number = len(state.items) - 1
         return self._replan([number], new=number)
+
+    def promise(self, name: str, due_s: float) -> None:
+        """An item was said to be delivered by then: from now on it costs to be later."""
+        tracked = next(each for each in self._state.items if each.item.name == name)
+        delivery = replace(tracked.item.delivery, due_s=due_s)
+        tracked.item = replace(tracked.item, delivery=delivery)
 
     def _cancel(self, name: str) -> Outcome:
         state = self._state

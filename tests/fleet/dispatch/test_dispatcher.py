@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 from dispatch_office import (
     DONE,
@@ -192,6 +193,21 @@ def test_what_is_wanted_soon_is_not_put_off_for_what_is_wanted_later(
         hers = dispatcher.view(f"hers{number}").expected
         assert hers is not None
         assert hers.done_s - later_s - 600.0 * number < 120.0
+
+
+@pytest.mark.parametrize("stay_s", [0.0, 30.0])
+def test_what_was_booked_first_is_done_though_something_recurs_all_the_time(stay_s: float) -> None:
+    dispatcher = dispatcher_for("a")
+    said = dispatcher.submit(visit("mine", place="e"), 0.0).expected
+    assert said is not None
+    often = visit("often", place="b", stay_s=stay_s, recurrence=Recurrence(every_s=60.0))
+    dispatcher.submit(often, 0.0)
+    latest_s = said.done_s + Policy().slack_s
+    for now_s in np.arange(0.0, latest_s - 60.0, 60.0):
+        dispatcher.legs_to_begin(float(now_s))
+        mine = dispatcher.view("mine").expected
+        assert mine is not None
+        assert mine.done_s <= latest_s + 60.0
 
 
 # --- legs -----------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ from test_legs_as_runs import SCENE, SITE, FakeRun, FakeRuns, FakeSite
 
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found
+from mend.fleet.dispatch.setting import Policy
 from mend.fleet.dispatch.snapshot import DispatcherSnapshot
 from mend.fleet.requests import RequestStatus
 from mend.maps.building.building import Building, BuildingDocument, Floor, FloorPlace, Lane
@@ -35,6 +36,10 @@ ROW = ("ab", "bc", "cd", "de")
 RING = (*ROW, "ea")
 
 
+PATIENT = Policy(slack_s=3600.0)
+"""Time leaps here while a robot comes to rest: nothing is late for that."""
+
+
 class Work:
     """A fleet, unless said otherwise of one robot at `a`, in rooms with such lanes between them."""
 
@@ -50,9 +55,9 @@ class Work:
         self.site, self.journal = FakeSite(), SqliteJournal(":memory:")
         self.runs = FakeRuns(self.site)
         self.dispatcher = (
-            Dispatcher(building, fleet_of(*starts))
+            Dispatcher(building, fleet_of(*starts, policy=PATIENT))
             if snapshot is None
-            else Dispatcher.restored(building, fleet_of(*starts), snapshot)
+            else Dispatcher.restored(building, fleet_of(*starts, policy=PATIENT), snapshot)
         )
         names, options = PlaceNames(building, SCENE), FleetOptions()
         self.fleet = FleetAtWork(

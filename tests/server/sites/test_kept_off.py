@@ -2,7 +2,7 @@
 that know of such things."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NoReturn
 from uuid import UUID
 
 from mend.robots.link.messages import (
@@ -11,6 +11,7 @@ from mend.robots.link.messages import (
     ClosedWay,
     FailedRobot,
     Hello,
+    Intervened,
     MakeWay,
     NoteTaken,
 )
@@ -69,10 +70,14 @@ async def site_of(*hellos: Hello) -> tuple[Site, FakeRegistry]:
     journal: Any = None
     world: Callable[..., Any] = lambda _: FakeWorld()  # noqa: E731
     robots = {name: Frame() for name in ("ada", "bob")}
-    site = Site(UUID(int=1), robots, world, registry, journal, lambda _: None)
+    site = Site(UUID(int=1), robots, world, registry, journal, lambda _: None, _no_event)
     for each in hellos:
         await come(site, registry, each)
     return site, registry
+
+
+def _no_event(done: Intervened, at_s: float) -> NoReturn:
+    raise AssertionError(f"{done} at {at_s} s, though nobody is there")
 
 
 async def come(site: Site, registry: FakeRegistry, said: Hello) -> None:
