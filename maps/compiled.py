@@ -24,6 +24,6 @@ def compiled(function: Kernel, **options: Any) -> Kernel:
     """
     options = {"error_model": "numpy", **options}
     kernel = cast(Any, numba.njit)(**options)(function)
-    with suppress(RuntimeError):
+    with suppress(RuntimeError, OSError):
         kernel._cache = KernelCache(function)
     return cast(Kernel, kernel)

@@ -16,7 +16,7 @@ import numpy as np
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.dispatcher import Dispatcher
 
-_CONSTANTS = (bool, int, float, complex, str, bytes, tuple, frozenset, np.dtype, np.generic)
+_CONSTANTS = (bool, int, float, complex, str, bytes, tuple, np.dtype, np.generic)
 _OURS = "mend"
 _stamps: dict[Callable[..., Any], str] = {}
 

@@ -74,7 +74,7 @@ class FleetNews:
         return ev.LegBegun(
             wall_time=self._utc_now(),
             site=self._site,
-            at_s=self._now_s(),
+            at_s=self._dispatcher.now_s,
             robot=leg.robot,
             number=leg.number,
             booking=leg.booking,
@@ -88,7 +88,7 @@ class FleetNews:
         return ev.LegEnded(
             wall_time=self._utc_now(),
             site=self._site,
-            at_s=self._now_s(),
+            at_s=self._dispatcher.now_s,
             robot=leg.robot,
             number=leg.number,
             booking=leg.booking,
@@ -132,7 +132,7 @@ class FleetNews:
         return ev.RequestChanged(
             wall_time=self._utc_now(),
             site=self._site,
-            at_s=self._now_s(),
+            at_s=self._dispatcher.now_s,
             request=view.name,
             what=view.request.model_dump(mode="json", exclude_none=True),
             status=view.status,

@@ -7,8 +7,9 @@ from uuid import UUID
 import pytest
 import pytest_asyncio
 from console_in_browser import OpenPage
+from lost_answers import answers_lost, until_it_is_not_known
 from office_with_fleet import open_office_with_fleet
-from playwright.async_api import Page, Route, expect
+from playwright.async_api import Page, expect
 
 from mend.server.composition import Service
 
@@ -79,25 +80,12 @@ async def test_what_is_not_known_to_be_booked_is_booked_once_however_it_is_asked
     await open_office_with_fleet(service)
     page = await open_page("/requests")
 
-    async def lose(route: Route) -> None:
-        if route.request.method != "POST":
-            return await route.continue_()
-        await route.fetch()
-        await route.abort()
-
     await page.get_by_label("Have a robot come").check(timeout=LONG_MS)
     await page.get_by_label("Where").fill("F1 106")
-    await page.clock.install()
-    await page.route("**/api/requests?*", lose)
     ask = page.get_by_role("button", name="Ask for it", exact=True)
-    await ask.click()
-    unknown = page.get_by_text("I do not know whether that was booked.")
-    for _ in range(20):
-        await expect(page.get_by_text("I try once more").or_(unknown)).to_be_visible()
-        if await unknown.is_visible():
-            break
-        await page.clock.run_for(5_000)
-    await page.unroute("**/api/requests?*")
+    async with answers_lost(page):
+        await ask.click()
+        await until_it_is_not_known(page)
     await ask.click()
     mine = page.get_by_role("region", name="Your request")
     await expect(mine).to_contain_text("Come to F1 106")

@@ -8,6 +8,7 @@ import pytest
 import pytest_asyncio
 from console_in_browser import OpenPage, settle
 from hearing_browser import give_ear
+from lost_answers import answers_lost, until_it_is_not_known
 from office_with_fleet import open_office_with_fleet
 from playwright.async_api import Page, Route, ViewportSize, expect
 from test_accessibility import PHONE, RULES, load_axe, violations
@@ -189,25 +190,12 @@ async def test_what_is_not_known_to_be_booked_is_said_so_and_asked_for_once_more
 ) -> None:
     page = await at_robot(service, open_page, floors=1)
 
-    async def lose(route: Route) -> None:
-        if route.request.method != "POST":
-            return await route.continue_()
-        await route.fetch()
-        await route.abort()
-
-    await page.clock.install()
-    await page.route("**/api/requests?*", lose)
-    await press(page, "Come to a room")
-    await press(page, "F1 106")
-    await press(page, "Yes, that is right")
-    unknown = page.get_by_text("I do not know whether that was booked.")
-    for _ in range(20):
-        await expect(page.get_by_text("I try once more").or_(unknown)).to_be_visible()
-        if await unknown.is_visible():
-            break
-        await page.clock.run_for(5_000)
-    await expect(page.get_by_text("That cannot be done")).to_be_hidden()
-    await page.unroute("**/api/requests?*")
+    async with answers_lost(page):
+        await press(page, "Come to a room")
+        await press(page, "F1 106")
+        await press(page, "Yes, that is right")
+        await until_it_is_not_known(page)
+        await expect(page.get_by_text("That cannot be done")).to_be_hidden()
     await press(page, "Try once more")
     await expect(page.get_by_role("region", name="Your request")).to_contain_text("Come to F1 106")
     assert len(await service.fleets.requests(None)) == 1
