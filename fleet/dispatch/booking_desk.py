@@ -1,23 +1,26 @@
 """What people ask: booked, refused with the next possible time, changed or cancelled."""
 
+from collections.abc import Iterable, Sequence
+
 from mend.errors import ConflictError, WrongInputError
 from mend.fleet.dispatch.booking import Answer, AnyRequest, Booking, Expected, Series
 from mend.fleet.dispatch.closed_words import with_closed
 from mend.fleet.dispatch.dispatch_state import DispatchState, refusing
 from mend.fleet.dispatch.giving_up import GivingUp
 from mend.fleet.dispatch.next_possible import bounded, next_possible
+from mend.fleet.dispatch.recurring import Recurring
 from mend.fleet.dispatch.views import stops_by_booking, view_of
 from mend.fleet.requests import RequestStatus
 from mend.fleet.scheduling.problem import Item
-from mend.fleet.scheduling.replanning.events import Cancelled, NewItem
+from mend.fleet.scheduling.replanning.events import Cancelled, NewItem, NewItems
 from mend.fleet.scheduling.replanning.running_fleet import RunningFleet
 
 
 class BookingDesk:
     """Takes requests on, one by one and as they recur."""
 
-    def __init__(self, state: DispatchState, giving_up: GivingUp) -> None:
-        self._state, self._giving_up = state, giving_up
+    def __init__(self, state: DispatchState, giving_up: GivingUp, recurring: Recurring) -> None:
+        self._state, self._giving_up, self._recurring = state, giving_up, recurring
 
     def submit(self, request: AnyRequest) -> Answer:
         """Book a request, or the first occurrence of one that recurs, or refuse it."""
@@ -93,20 +96,23 @@ class BookingDesk:
             raise ConflictError(f"there is a request '{name}' already")
 
     def book_recurring(self) -> None:
-        """Book what recurs as far ahead as is planned."""
-        for series in self._state.series.values():
-            while not series.over:
-                if not series.request.recurs(series.booked + 1):
-                    series.over = True
-                    break
-                if series.is_missed(self._state.fleet.now_s):
-                    series.booked += 1
-                    continue
-                if self._books_next_s(series) > self._state.fleet.now_s:
-                    break
-                name, request = series.next_name(), series.request.occurrence(series.booked + 1)
-                series.booked += 1
-                self._book(name, request)
+        """Book what recurs as far ahead as is planned, all at once: each by itself would take as
+        long as all. Of much the rest is booked at the next call."""
+        lot, state = self._recurring.next_lot(), self._state
+        if not lot:
+            return
+        if any(name in state.fleet.items for name, _ in lot):
+            state.fleet.forget_closed()
+        names = [name for name, _ in lot]
+        items = tuple(self._item(name, request) for name, request in lot)
+        refused = state.apply(NewItems(items), _asked_for(names), names).refused
+        for name, request in lot:
+            booking = Booking(name, request)
+            state.bookings.pop(name, None)
+            state.bookings[name] = booking
+            if name in refused:
+                self._refuse(booking, self._closed_told(refused[name]))
+        self._promise([name for name in names if name not in refused])
 
     def _item(self, name: str, request: AnyRequest) -> Item:
         item = request.item(name, self._state.terms)
@@ -125,19 +131,28 @@ class BookingDesk:
         self._state.bookings.pop(name, None)
         self._state.bookings[name] = booking
         if answer is not None:
-            booking.status, booking.reason = RequestStatus.REFUSED, answer.why
-            booking.closed_s = self._state.fleet.now_s
+            self._refuse(booking, answer.why)
             return answer
         return self._promised(name)
 
     def _promised(self, name: str) -> Answer:
         """It is booked, with when it is expected, which is kept to from now on."""
+        return Answer(True, self._promise([name])[name])
+
+    def _promise(self, names: Iterable[str]) -> dict[str, Expected | None]:
+        """When each of what is booked is expected, which is kept to from now on."""
         self._state.settle()
-        expected = self._expected(name)
-        if expected is not None:
-            due_s = expected.done_s + self._state.policy.slack_s
-            self._state.fleet.promise(name, due_s)
-        return Answer(True, expected)
+        stops, promised = stops_by_booking(self._state.fleet), dict[str, Expected | None]()
+        for name in names:
+            expected = view_of(self._state.bookings[name], stops).expected
+            promised[name] = expected
+            if expected is not None:
+                self._state.fleet.promise(name, expected.done_s + self._state.policy.slack_s)
+        return promised
+
+    def _refuse(self, booking: Booking, why: str | None) -> None:
+        booking.status, booking.reason = RequestStatus.REFUSED, why
+        booking.closed_s = self._state.fleet.now_s
 
     def _take_on(self, fleet: RunningFleet, item: Item, why: str) -> Answer | None:
         """Go on as that fleet with one more item. Where it has no place, stay as it is, and say why
@@ -152,8 +167,10 @@ class BookingDesk:
                 self._state.fleet = trial
             return None
         window = next_possible(fleet, item, longest_s=policy.longest_s, grace_s=policy.grace_s)
-        why = with_closed(refused, self._state.building, fleet.closed_until_s())
-        return Answer(False, None, why, window)
+        return Answer(False, None, self._closed_told(refused), window)
+
+    def _closed_told(self, why: str) -> str:
+        return with_closed(why, self._state.building, self._state.fleet.closed_until_s())
 
     def _cancel(self, booking: Booking) -> None:
         item = self._state.fleet.items[booking.name]
@@ -163,22 +180,13 @@ class BookingDesk:
         self._giving_up.give_up(booking, f"'{booking.name}' was cancelled")
         self._state.settle()
 
-    def _expected(self, name: str) -> Expected | None:
-        stops = stops_by_booking(self._state.fleet)
-        return view_of(self._state.bookings[name], stops).expected
 
-    def books_s(self) -> list[float]:
-        """When the next occurrences of what recurs are to be booked."""
-        return [
-            self._books_next_s(series) for series in self._state.series.values() if not series.over
-        ]
-
-    def _books_next_s(self, series: Series) -> float:
-        recurrence, policy = series.request.recurrence, self._state.policy
-        assert recurrence is not None, "it is of a series"
-        # A plan that holds a day of what recurs each minute takes minutes to make.
-        ahead_s = min(policy.horizon_s, policy.occurrences * recurrence.every_s)
-        return series.request.occurrence(series.booked + 1).earliest_s - ahead_s
+def _asked_for(names: Sequence[str]) -> str:
+    if len(names) == 1:
+        return f"'{names[0]}' is asked for"
+    if len(names) == 2:
+        return f"'{names[0]}' and '{names[1]}' are asked for"
+    return f"'{names[0]}', '{names[1]}' and {len(names) - 2} more are asked for"
 
 
 def _at_its_time(request: AnyRequest, before: AnyRequest) -> AnyRequest:

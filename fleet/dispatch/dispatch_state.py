@@ -13,7 +13,7 @@ from mend.fleet.scheduling.problem import Problem, Robot, Transfers, Weights, Wi
 from mend.fleet.scheduling.replanning.events import Event, EventError
 from mend.fleet.scheduling.replanning.item_state import TrackedItem
 from mend.fleet.scheduling.replanning.open_ways import OpenWays
-from mend.fleet.scheduling.replanning.running_fleet import RunningFleet
+from mend.fleet.scheduling.replanning.running_fleet import Outcome, RunningFleet
 from mend.fleet.scheduling.travel import TravelError
 from mend.maps.building.building import Building
 
@@ -75,8 +75,9 @@ class DispatchState:
 
     def apply(
         self, event: Event, why: str, requests: Iterable[str], *, own: str | None = None
-    ) -> None:
-        """Let the fleet know; `own`: what goes on as planned with that event.
+    ) -> Outcome:
+        """Let the fleet know, and say what became of its plan; `own`: what goes on as planned with
+        that event.
 
         Raises `ConflictError` where it makes no sense.
         """
@@ -85,6 +86,7 @@ class DispatchState:
             self.log.entry(lambda: self.fleet, why, requests, own=own) as outcomes,
         ):
             outcomes.append(self.fleet.apply(event, self.fleet.now_s))
+        return outcomes[0]
 
     def settle(self) -> None:
         """Let every open booking follow its item."""

@@ -15,6 +15,7 @@ from mend.fleet.dispatch.dispatch_state import DispatchState
 from mend.fleet.dispatch.giving_up import GivingUp
 from mend.fleet.dispatch.leg import Finding, Found, Leg, LegEnd
 from mend.fleet.dispatch.legs_at_work import LegsAtWork, leg_action
+from mend.fleet.dispatch.recurring import Recurring
 from mend.fleet.dispatch.setting import FleetSetting
 from mend.fleet.dispatch.snapshot import DispatcherSnapshot, restore, snapshot_of
 from mend.fleet.dispatch.taking_over import TakingOver
@@ -55,7 +56,8 @@ class Dispatcher:
     def __init__(self, building: Building, setting: FleetSetting, *, now_s: float = 0.0) -> None:
         self._state = DispatchState(building, setting)
         self._giving_up = GivingUp(self._state)
-        self._desk = BookingDesk(self._state, self._giving_up)
+        self._recurring = Recurring(self._state)
+        self._desk = BookingDesk(self._state, self._giving_up, self._recurring)
         self._legs = LegsAtWork(self._state, self._giving_up)
         self._taking_over = TakingOver(self._state)
         self._state.fleet.advance(now_s)
@@ -310,7 +312,7 @@ class Dispatcher:
         """When `legs_to_begin` has to be asked again, if nothing happens before."""
         policy = self._state.policy
         times = [*self._legs.times_s(), *self.closed_until_s().values()]
-        times += self._desk.books_s()
+        times += self._recurring.times_s()
         if self._waits():
             times.append(self._state.tried_s + policy.retry_waiting_s)
         return max(self.now_s, min(times)) if times else None

@@ -43,7 +43,8 @@ class Policy(StrictModel):
     no latest moment of its own has to be done within `longest_s`. What robots found is forgotten
     after `forget_s`. What is done up to `slack_s` later than was said is not late. Robots leave
     `reserve_s` earlier than they must. What recurs is planned `horizon_s` ahead, but not more than
-    the next `occurrences`. The next possible time lasts `grace_s` longer than it must. So many
+    the next `occurrences` of each, and less where those of all come to more than
+    `occurrences_in_all`. The next possible time lasts `grace_s` longer than it must. So many
     closed requests and changes of plans are kept as `kept` says.
     """
 
@@ -57,6 +58,7 @@ class Policy(StrictModel):
     reserve_s: Handling = 30.0
     horizon_s: Span = 24 * 3600.0
     occurrences: Annotated[int, Field(ge=1, le=1000)] = 12
+    occurrences_in_all: Annotated[int, Field(ge=1, le=100_000)] = 160
     grace_s: Span = 120.0
     kept: Annotated[int, Field(ge=1, le=1_000_000)] = 1000
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from mend.fleet.dispatch.booking import Booking, Expected, RequestView
-from mend.fleet.scheduling.replanning.item_state import ItemState
+from mend.fleet.scheduling.replanning.item_state import ItemState, TrackedItem
 from mend.fleet.scheduling.replanning.live_plan import NextStop
 from mend.fleet.scheduling.replanning.running_fleet import RunningFleet
 from mend.fleet.scheduling.schedule import Action
@@ -72,21 +72,20 @@ def _as_late_as_it_is(
     """
     if not stops:
         return
-    tracked, first = fleet.robots[robot], stops[0]
+    tracked, first, items = fleet.robots[robot], stops[0], fleet.items
     has_begun = tracked.held and tracked.begun_s is not None
     late_s = max(0.0, now_s - (first.done_s if has_begun else first.begin_s))
     before_s = first.begin_s
     for stop in stops:
-        if stop.begin_s <= _opens_s(fleet, stop) + CHECK_S:
+        if stop.begin_s <= _opens_s(items[stop.item], stop) + CHECK_S:
             # It waits for its time, which takes up what is late.
             late_s = max(0.0, before_s + late_s - stop.begin_s)
         yield ExpectedStop(robot, stop, late_s)
         before_s = stop.done_s
 
 
-def _opens_s(fleet: RunningFleet, stop: NextStop) -> float:
+def _opens_s(item: TrackedItem, stop: NextStop) -> float:
     """Before when it may not be begun."""
-    item = fleet.items[stop.item]
     if stop.action is Action.PICK:
         waits = item.state is ItemState.WAITING
         return item.item.pickup.window.earliest_s if waits else item.ready_s

@@ -17,6 +17,13 @@ class NewItem:
 
 
 @dataclass(frozen=True, slots=True)
+class NewItems:
+    """Somebody asks for several more deliveries, which are planned at once."""
+
+    items: tuple[Item, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Cancelled:
     """An item is not wanted any more; what has been picked up already goes back."""
 
@@ -158,6 +165,7 @@ class Fetched:
 
 Event = (
     NewItem
+    | NewItems
     | Cancelled
     | RobotDelayed
     | RobotFailed

@@ -22,6 +22,7 @@ from mend.fleet.scheduling.replanning.events import (
     ItemLost,
     LetGo,
     NewItem,
+    NewItems,
     RobotBack,
     RobotDelayed,
     RobotFailed,
@@ -150,7 +151,9 @@ class RunningFleet(KnownFleet):
         self._before = list(self._state.routes)
         match event:
             case NewItem():
-                return self._new_item(event.item)
+                return self._new_items((event.item,))
+            case NewItems():
+                return self._new_items(event.items)
             case Cancelled():
                 return self._cancel(event.item)
             case RobotDelayed():
@@ -218,20 +221,23 @@ class RunningFleet(KnownFleet):
         state.take_out(number)
         return self._replan(state.retry())
 
-    def _new_item(self, item: Item) -> Outcome:
-        state = self._state
-        if item.name in self.items:
-            raise EventError(f"there is an item '{item.name}' already")
-        if item.aboard is not None:
-            raise EventError(f"item '{item.name}' is new; nobody can have it aboard already")
+    def _new_items(self, items: Sequence[Item]) -> Outcome:
+        state, known = self._state, set(self.items)
+        for item in items:
+            if item.name in known:
+                raise EventError(f"there is an item '{item.name}' already")
+            if item.aboard is not None:
+                raise EventError(f"item '{item.name}' is new; nobody can have it aboard already")
+            known.add(item.name)
         robots = tuple(robot.robot for robot in state.robots)
         try:
-            Problem("new", state.building.places, state.travel, robots, (item,))
+            Problem("new", state.building.places, state.travel, robots, tuple(items))
         except ProblemError as error:
             raise EventError(str(error)) from error
-        state.items.append(TrackedItem(item))
-        number = len(state.items) - 1
-        return self._replan([number], new=number)
+        first = len(state.items)
+        state.items.extend(TrackedItem(item) for item in items)
+        numbers = range(first, len(state.items))
+        return self._replan(numbers, new=numbers)
 
     def promise(self, name: str, due_s: float) -> None:
         """An item was said to be delivered by then: from now on it costs to be later."""
@@ -328,7 +334,7 @@ class RunningFleet(KnownFleet):
     # --- the plan ---------------------------------------------------------------------------------
 
     def _replan(
-        self, selling: Sequence[int], *, new: int | None = None, again: Iterable[int] = ()
+        self, selling: Sequence[int], *, new: Sequence[int] = (), again: Iterable[int] = ()
     ) -> Outcome:
         """Make the rest hold with some items sold; `again`: items offered where that is cheaper."""
         state = self._state
@@ -374,7 +380,7 @@ class RunningFleet(KnownFleet):
 
     def _outcome(
         self,
-        new: int | None,
+        new: Sequence[int],
         put_off: Mapping[int, str],
         late: Mapping[int, str] | None = None,
         overtime: Mapping[str, str] | None = None,
@@ -382,7 +388,7 @@ class RunningFleet(KnownFleet):
         """Refuse or put off what has no place, and say what became of everything."""
         items, refused = self._state.items, {}
         for number, why in put_off.items():
-            if number == new:
+            if number in new:
                 refused[items[number].item.name] = why
                 items[number].close(ItemState.REFUSED)
             else:
@@ -391,6 +397,6 @@ class RunningFleet(KnownFleet):
             self._state.changed_since(self._before),
             {items[n].item.name: why for n, why in (late or {}).items()},
             refused,
-            {items[n].item.name: why for n, why in put_off.items() if n != new},
+            {items[n].item.name: why for n, why in put_off.items() if n not in new},
             overtime or {},
         )
