@@ -8,7 +8,11 @@ from mend.fleet.dispatch.dispatch_state import DispatchState
 from mend.fleet.requests import RequestStatus
 
 AT_ONCE = 24
-"""So many occurrences are booked in one go, those first that begin first; the rest at the next."""
+LEAST_AT_ONCE = 4
+"""So many occurrences at most are booked in one go, and at least, as far as any are due: those
+first that begin first, the rest at the next."""
+IN_PLAN = 3000
+"""In one go times what is in the plan: each takes the longer the more is planned."""
 LEAST_AHEAD = 3
 """So many of each are booked ahead however much else recurs."""
 LEAST_BEHIND = 2
@@ -31,7 +35,8 @@ class Recurring:
         lot: list[tuple[str, AnyRequest]] = []
         queue = [(_begins_s(each), number) for number, each in enumerate(series)]
         heapify(queue)
-        while queue and len(lot) < AT_ONCE:
+        most = self._at_once()
+        while queue and len(lot) < most:
             _, number = heappop(queue)
             each = series[number]
             if not each.request.recurs(each.booked + 1):
@@ -56,6 +61,10 @@ class Recurring:
 
     def _running(self) -> list[Series]:
         return [each for each in self._state.series.values() if not each.over]
+
+    def _at_once(self) -> int:
+        planned = sum(each.open for each in self._state.bookings.values())
+        return max(LEAST_AT_ONCE, min(AT_ONCE, IN_PLAN // max(1, planned)))
 
     def _ahead(self) -> int:
         """How many of each series are booked ahead: less than usual where much recurs."""

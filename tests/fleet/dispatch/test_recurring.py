@@ -55,11 +55,13 @@ def test_of_much_that_is_due_what_begins_first_is_booked_first_and_the_rest_at_o
     before = _booked(dispatcher)
     dispatcher.legs_to_begin(60.0)
     new = _booked(dispatcher) - before
-    assert len(new) == AT_ONCE
+    assert 0 < len(new) <= AT_ONCE
     assert dispatcher.wakes_s() == 60.0
-    for _ in range(MANY // AT_ONCE + 1):
+    known = set[str]()
+    while known != _booked(dispatcher):
+        known = _booked(dispatcher)
         dispatcher.legs_to_begin(60.0)
-    later = _booked(dispatcher) - before - new
+    later = known - before - new
     times_s = {view.name: view.request.earliest_s for view in dispatcher.views()}
     assert max(times_s[each] for each in new) <= min(times_s[each] for each in later)
     soon = [f"s{series}/{number}" for series in range(MANY) for number in (2, 3, 4)]
