@@ -100,7 +100,7 @@ class Errands:
             if errand.charges and reason is not None:
                 self._charging.could_not(robot, self._book.now_s)
             self._book.note(self._book.news.errand_ended(errand, at, reason))
-            self._end(errand, at)
+            await self._end(errand, at)
             await self._book.keep()
         if begun:
             self._book.changed.set()
@@ -137,12 +137,13 @@ class Errands:
         except RefusalError as error:
             log.info("the errand of %s was over, or not begun: %s", errand.robot, error)
 
-    def _end(self, errand: Errand, at: str) -> None:
+    async def _end(self, errand: Errand, at: str) -> None:
         """Its robot is at a place, which plans know from now on."""
         del self._going[errand.robot], self._tasks[errand.robot]
         self._unwanted.discard(errand.run)
         if self._dispatcher.fleet.robots[errand.robot].works:
             try:
-                self._dispatcher.robot_moved(errand.robot, at, self._dispatcher.now_s)
+                now_s = self._dispatcher.now_s
+                await self._book.in_thread(self._dispatcher.robot_moved, errand.robot, at, now_s)
             except ConflictError as error:
                 log.info("where %s has gone changes no plan: %s", errand.robot, error)

@@ -3,6 +3,7 @@
 import asyncio
 import logging
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
 from typing import Literal, TypeVar
@@ -54,6 +55,18 @@ LOOKS_AGAIN_S = 5.0
 
 OTHERS_S = 3.0
 """So long a robot whose way is barred lets others go instead before it asks people (its time)."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Decided:
+    """What comes of what was thought about: legs that are not wanted any more, robots that have
+    charged enough, or whose turn it is at their place; when plans are to be looked at again."""
+
+    unwanted: list[Leg]
+    charged: list[Errand]
+    ready: frozenset[str]
+    wakes_s: float | None
+    taken_out: Mapping[str, list[str]]
 
 
 class FleetAtWork:
@@ -158,46 +171,64 @@ class FleetAtWork:
 
     async def _go_on(self) -> None:
         async with self._book.at_once:
-            free = [each for each in self.dispatcher.fleet.robots if self._is_free(each)]
-            for robot, to in self._held_cabins.to_send_out(free, self.now_s):
-                self._errands.send(robot, to, None)
-            free = [each for each in free if each not in self._errands.going]
-            going = self._errands.going.values()
-            for robot, charger in self._charging.to_send(free, going, self.now_s):
-                self._errands.send(robot, charger, None, charges=True)
-            unwanted = await asyncio.to_thread(self._decide, self.now_s)
-            asked, self._asked_aside = self._asked_aside, {}
-            free = [each for each in free if each not in self._errands.going]
-            to_charge = self._charging.wanted(free, self.now_s)
-            makes_way = who_makes_way(self.dispatcher, self.places.names, to_charge)
-            aside = [*asked.items(), *makes_way]
-            for robot, to in aside:
-                if robot not in self._errands.going and self._site.rests(robot):
-                    self._errands.send(robot, to, None)
+            decided = await self._book.in_thread(self._decide, self.now_s)
             await self._book.keep()
             under_way = self.dispatcher.legs_under_way()
             robots = self.dispatcher.fleet.robots.items()
             failed = [name for name, each in robots if not each.works]
             failed += [each for each in self._held_cabins.held if each not in failed]
             self._site.keep_off(self.dispatcher.closed_until_s(), failed)
-            self._site.note_taken(taken_out(self.dispatcher))
-            for execution in self._legs.executions.values():
-                execution.look_again()
+            self._site.note_taken(decided.taken_out)
+            for robot, execution in self._legs.executions.items():
+                execution.look_again(ready=robot in decided.ready)
             self._alarms.ring()
-            self._let_time_pass()
+            self._let_time_pass(decided.wakes_s)
             errands = list(self._errands.going.values())
-            charged = self._charging.enough(errands, self.now_s)
-        for errand in charged:
+        for errand in decided.charged:
             await self._errands.break_off(errand)
         for errand in errands:
             self._errands.carry_out(errand)
         for leg in under_way:
             self._legs.carry_out(leg)
         # Nothing is begun after a break: what was under way may be over by then.
-        for execution in [self._legs.executions[leg.robot] for leg in unwanted]:
+        executions = self._legs.executions
+        unwanted = [executions[e.robot] for e in decided.unwanted if e.robot in executions]
+        for execution in unwanted:
             await execution.break_off()
 
-    def _decide(self, now_s: float) -> list[Leg]:
+    def _decide(self, now_s: float) -> _Decided:
+        """All that is to be thought about, which takes a while where much is planned."""
+        self._send_before_legs(now_s)
+        unwanted = self._begin_legs(now_s)
+        self._send_aside(now_s)
+        charged = self._charging.enough(self._errands.going.values(), now_s)
+        ready = self._legs.ready()
+        open_ = any(each.open for each in self.dispatcher.fleet.items.values())
+        wakes_s = self.dispatcher.wakes_s() if open_ else None
+        return _Decided(unwanted, charged, ready, wakes_s, taken_out(self.dispatcher))
+
+    def _send_before_legs(self, now_s: float) -> None:
+        """Robots get out of cabins, and charge, before they do anything else."""
+        free = [each for each in self.dispatcher.fleet.robots if self._is_free(each)]
+        for robot, to in self._held_cabins.to_send_out(free, now_s):
+            self._errands.send(robot, to, None)
+        free = [each for each in free if each not in self._errands.going]
+        going = self._errands.going.values()
+        for robot, charger in self._charging.to_send(free, going, now_s):
+            self._errands.send(robot, charger, None, charges=True)
+
+    def _send_aside(self, now_s: float) -> None:
+        """Robots that have nothing to do make way."""
+        asked, self._asked_aside = self._asked_aside, {}
+        names = self.dispatcher.fleet.robots
+        free = [each for each in names if self._is_free(each)]
+        to_charge = self._charging.wanted(free, now_s)
+        makes_way = who_makes_way(self.dispatcher, self.places.names, to_charge)
+        for robot, to in [*asked.items(), *makes_way]:
+            if self._is_free(robot):
+                self._errands.send(robot, to, None)
+
+    def _begin_legs(self, now_s: float) -> list[Leg]:
         """Have robots that rest set out for what is due; the legs that are not wanted any more."""
         for robot, known in self.dispatcher.fleet.robots.items():
             if (
@@ -248,11 +279,12 @@ class FleetAtWork:
         """The site's clock for who watches it."""
         return self._book.shown_s
 
-    def _let_time_pass(self) -> None:
-        """Have the site's clock run to when there is something to be done, if there ever is."""
-        now_s, wakes_s, alarm_s = self.now_s, None, self._alarms.next_s
-        if any(each.open for each in self.dispatcher.fleet.items.values()):
-            wakes_s = self.dispatcher.wakes_s()
+    def _let_time_pass(self, wakes_s: float | None) -> None:
+        """Have the site's clock run to when there is something to be done, if there ever is.
+
+        `wakes_s`: when plans have something to be done.
+        """
+        now_s, alarm_s = self.now_s, self._alarms.next_s
         if alarm_s is not None:
             wakes_s = min(alarm_s, wakes_s or alarm_s)
         if any(execution.waits for execution in self._legs.executions.values()):
@@ -281,7 +313,7 @@ class FleetAtWork:
     async def _robot_found(self, found: Found) -> None:
         async with self._book.told():
             try:
-                if await asyncio.to_thread(self._found_ways.take, found, self.now_s):
+                if await self._book.in_thread(self._found_ways.take, found, self.now_s):
                     self._note_found(found)
             except RefusalError as error:
                 log.info("what %s found of its way changes no plan: %s", found.by, error)
@@ -364,15 +396,19 @@ class FleetAtWork:
         self._require_doable(request)
         first = request.name if request.recurrence is None else f"{request.name}/1"
         async with self._book.told(author, request.name):
-            answer = await asyncio.to_thread(self.dispatcher.submit, request, self.now_s)
-            return self._booked(first, answer)
+            return await self._book.in_thread(
+                lambda now_s: self._booked(first, self.dispatcher.submit(request, now_s)),
+                self.now_s,
+            )
 
     async def change(self, name: str, request: AnyRequest, author: ev.Author | None) -> RequestView:
         """Other words for what nobody has set out for. Raises what `submit` does."""
         self._require_doable(request)
         async with self._book.told(author, name):
-            answer = await asyncio.to_thread(self.dispatcher.change, name, request, self.now_s)
-            return self._booked(name, answer)
+            return await self._book.in_thread(
+                lambda now_s: self._booked(name, self.dispatcher.change(name, request, now_s)),
+                self.now_s,
+            )
 
     def _booked(self, name: str, answer: Answer) -> RequestView:
         if not answer.booked:
@@ -382,7 +418,7 @@ class FleetAtWork:
     async def cancel(self, name: str, author: ev.Author | None) -> RequestView | None:
         """What was asked for is not wanted any more. Raises as `Dispatcher.cancel`."""
         async with self._book.told(author, name):
-            return await asyncio.to_thread(self.dispatcher.cancel, name, self.now_s)
+            return await self._book.in_thread(self.dispatcher.cancel, name, self.now_s)
 
     async def break_off_errands(self) -> None:
         """No robot goes anywhere without a leg; over once those have ended that had begun."""
@@ -429,4 +465,4 @@ class FleetAtWork:
     async def read(self, view: Callable[[Dispatcher], T]) -> T:
         """What a view of its dispatcher shows, while nothing changes there."""
         async with self._book.at_once:
-            return view(self.dispatcher)
+            return await self._book.in_thread(view, self.dispatcher)

@@ -1,8 +1,9 @@
 """What a fleet knows: it is in the journal before anybody hears of it."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager
+from typing import ParamSpec, TypeVar
 
 from mend.errors import NotFoundError
 from mend.fleet.dispatch.dispatcher import Dispatcher
@@ -14,6 +15,9 @@ from mend.server.fleets.place_names import PlaceNames
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Document, Entry, Journal
 from mend.server.sites.site import Site
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 class FleetBook:
@@ -80,6 +84,19 @@ class FleetBook:
             known = ", ".join(self.dispatcher.fleet.robots)
             raise NotFoundError(f"this fleet has no robot '{robot}'; it has {known}")
 
+    async def in_thread(self, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+        """Have the dispatcher do something that may take long, for who holds `at_once`.
+
+        Also who is to stop meanwhile waits until it is done, as nobody else may change anything
+        before.
+        """
+        doing = asyncio.ensure_future(asyncio.to_thread(work, *args, **kwargs))
+        try:
+            return await asyncio.shield(doing)
+        except asyncio.CancelledError:
+            await asyncio.wait({doing})
+            raise
+
     # --- What is written down -----------------------------------------------------------------
 
     def note(self, event: ev.Event) -> None:
@@ -99,8 +116,19 @@ class FleetBook:
 
     async def keep(self, author: ev.Author | None = None, asked: str = "") -> None:
         """Write down what has changed. Waits as long as the journal cannot be written."""
-        events = [*self._noted, *self.news.since(author, asked)]
-        self._noted.clear()
+        noted, self._noted = self._noted, []
+        events, record, text = await self.in_thread(self._written, noted, author, asked)
+        if text is None:
+            return
+        document = Document(KIND, str(self._site.id), text)
+        await self._journal.append(Entry(events=events, document=document), patient=True)
+        self._kept = record
+
+    def _written(
+        self, noted: Sequence[ev.Event], author: ev.Author | None, asked: str
+    ) -> tuple[list[ev.Event], FleetRecord, str | None]:
+        """What is new, and all that is known, with its text; without where nothing has changed."""
+        events = [*noted, *self.news.since(author, asked)]
         record = FleetRecord(
             dispatcher=self.dispatcher.snapshot(),
             out_of_service=self.out_of_service,
@@ -108,8 +136,5 @@ class FleetBook:
             closed_ways=self.closed_ways.kept(),
             held_cabins=dict(self._held_cabins()),
         )
-        if not events and record == self._kept:
-            return
-        document = Document(KIND, str(self._site.id), record.model_dump_json())
-        await self._journal.append(Entry(events=events, document=document), patient=True)
-        self._kept = record
+        changed = bool(events) or record != self._kept
+        return events, record, record.model_dump_json() if changed else None

@@ -41,7 +41,8 @@ _LONGEST = 500
 class LegTurn:
     """What a leg has to wait for at its place, by the site's clock.
 
-    `arrived` says that its robot is there; `may_begin` is asked when things have changed.
+    `arrived` says that its robot is there; `may_begin` is asked, in a thread, when things have
+    changed.
     """
 
     arrived: Callable[[], Awaitable[None]]
@@ -79,18 +80,22 @@ class LegExecution:
         """Whether its robot is there, and waits for its time."""
         return self._waiting is not None
 
-    def look_again(self) -> None:
-        """Time has passed, or others have done something: it may be its turn."""
+    def is_ready(self) -> bool:
+        """Whether its robot waits at its place, and it is its turn by now; may take a while."""
+        return self.waits and self._ready()
+
+    def look_again(self, *, ready: bool) -> None:
+        """Time has passed, or others have done something: it may be its turn (`is_ready`)."""
         if self._is_still:
             self._stands.set()
         waiting = self._waiting
-        if waiting is not None and not waiting.done() and (self._broken_off or self._ready()):
+        if waiting is not None and not waiting.done() and (self._broken_off or ready):
             waiting.set_result(None)
 
     async def break_off(self) -> None:
         """It is not wanted any more; `run` says that it was withdrawn, unless it was done."""
         self._broken_off = True
-        self.look_again()
+        self.look_again(ready=False)
         if self._run is not None:
             try:
                 await self._runs.abort(self._run)

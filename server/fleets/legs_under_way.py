@@ -39,6 +39,11 @@ class LegsUnderWay:
         """What is to be cancelled where the service stops."""
         return list(self._tasks.values())
 
+    def ready(self) -> frozenset[str]:
+        """The robots that wait at the place of their leg, and may begin by now."""
+        executions = list(self._executions.items())
+        return frozenset(robot for robot, each in executions if each.is_ready())
+
     def note_begun(self, leg: Leg, now_s: float) -> None:
         """A robot sets out for a leg, which is carried out once that is journaled."""
         start = self._book.at(leg.robot)
@@ -64,11 +69,11 @@ class LegsUnderWay:
 
     async def _follow(self, leg: Leg, execution: LegExecution) -> None:
         async with self._book.at_once:
-            at_once = self._dispatcher.may_begin(leg, self._book.now_s)
+            at_once = await self._book.in_thread(self._dispatcher.may_begin, leg, self._book.now_s)
         end = await execution.run(at_once=at_once)
         async with self._book.at_once:
             if leg.robot in {each.robot for each in self._dispatcher.legs_under_way()}:
-                await asyncio.to_thread(self._end, leg, end)
+                await self._book.in_thread(self._end, leg, end)
             del self._executions[leg.robot]
             del self._tasks[leg.robot]
             await self._book.keep()
@@ -76,7 +81,7 @@ class LegsUnderWay:
 
     async def _arrived(self, leg: Leg) -> None:
         async with self._book.at_once:
-            self._dispatcher.arrived(leg, self._book.now_s)
+            await self._book.in_thread(self._dispatcher.arrived, leg, self._book.now_s)
             await self._book.keep()
         self._book.changed.set()
 

@@ -30,7 +30,8 @@ class Operators:
         found = Found(finding=Finding(way.finding), between=(a, b), until_s=way.until_s)
         async with self._book.told():
             self._require_to_come(way)
-            self._book.dispatcher.found(found, self._book.now_s)
+            dispatcher, now_s = self._book.dispatcher, self._book.now_s
+            await self._book.in_thread(dispatcher.found, found, now_s)
             named = author is not None and author.principal not in RESERVED
             self._book.closed_ways.note(found, author.principal if author and named else None)
             finding = way.finding.replace("_", " ")
@@ -74,7 +75,8 @@ class Operators:
             leg = next((e for e in dispatcher.legs_under_way() if e.robot == robot), None)
             if leg is None and dispatcher.fleet.robots[robot].works:
                 at = self._book.met_at(robot)
-                dispatcher.robot_failed(robot, at, reason, self._book.now_s)
+                now_s = self._book.now_s
+                await self._book.in_thread(dispatcher.robot_failed, robot, at, reason, now_s)
         execution = self._legs.executions.get(robot)
         if leg is not None and execution is not None:
             await execution.break_off()

@@ -7,6 +7,8 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import partial
+from threading import Event as ThreadEvent
+from threading import get_ident
 from typing import Any
 from uuid import UUID
 
@@ -713,3 +715,56 @@ async def test_who_says_that_an_elevator_is_dead_names_one_that_there_is() -> No
             await work.fleet.operators.found(
                 WayReport(finding="elevator_dead", elevator="lift9"), None
             )
+
+
+async def test_no_plan_is_made_or_read_in_the_event_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    threads: dict[str, set[int]] = defaultdict(set)
+
+    def watched(name: str) -> Callable[..., Any]:
+        does = getattr(Dispatcher, name)
+
+        def noting(*args: Any, **kwargs: Any) -> Any:
+            threads[name].add(get_ident())
+            return does(*args, **kwargs)
+
+        return noting
+
+    every = ("_advance", "snapshot", "stops", "view", "views", "wakes_s", "taken_out")
+    async with working("a", "c") as work:
+        for name in every:
+            monkeypatch.setattr(Dispatcher, name, watched(name))
+        await work.fleet.submit(visit("wait", place="b", stay_s=5.0), None)
+        await work.fleet.submit(asked(earliest_s=6000.0), None)
+        (await work.runs.nth(1)).ended.set_result(("finished", True))
+        await work.until("wait", RequestStatus.DONE)
+        way = WayReport(finding="blocked", between=["f/d", "f/e"])
+        await work.fleet.operators.found(way, None)
+        await work.fleet.operators.take_out("r1", "a wheel squeaks", None)
+        await work.fleet.operators.put_back("r1", None)
+        await work.fleet.cancel("tea", None)
+        await work.fleet.requests()
+    assert set(threads) >= {"_advance", "snapshot", "view", "views", "wakes_s", "taken_out"}
+    assert [name for name, seen in threads.items() if get_ident() in seen] == []
+
+
+async def test_who_is_to_stop_while_a_plan_is_made_waits_until_it_is() -> None:
+    """Else somebody else would change what is still being changed."""
+    begun, may_end = ThreadEvent(), ThreadEvent()
+
+    def takes_long(_: Dispatcher) -> None:
+        begun.set()
+        may_end.wait()
+
+    async with working("a") as work:
+        reading = asyncio.create_task(work.fleet.read(takes_long))
+        await asyncio.to_thread(begun.wait)
+        reading.cancel()
+        other = asyncio.create_task(work.fleet.requests())
+        await asyncio.sleep(0)
+        await asyncio.sleep(0)
+        assert not reading.done()
+        assert not other.done()
+        may_end.set()
+        with pytest.raises(asyncio.CancelledError):
+            await reading
+        assert await other == []
