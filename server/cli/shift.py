@@ -4,6 +4,7 @@ import asyncio
 from collections.abc import AsyncIterator, Mapping
 from contextlib import suppress
 from functools import partial
+from math import inf
 from typing import TYPE_CHECKING, Any, Literal
 
 from mend.errors import ConflictError, RefusalError
@@ -117,6 +118,11 @@ class Shift:
                 self._told.say(f"{what} did not come: everything was over before", now_s)
             elif isinstance(each, WrongFloor):
                 self._tell_if_nobody_rode(each, now_s)
+            elif isinstance(each, NobodyAnswers):
+                until_s = inf if each.until_s is None else each.until_s
+                why = self._told.why_nobody_was_silent(each.at_s, until_s)
+                if why is not None:
+                    self._told.say(why, now_s)
         for failing in self._failing:
             if failing.looks:
                 self._told.say(failing.why_none(now_s), now_s)

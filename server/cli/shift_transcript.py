@@ -1,6 +1,7 @@
 """What happens in a shift, as lines on a terminal."""
 
 from collections.abc import Collection
+from math import inf
 from uuid import UUID
 
 import typer
@@ -27,6 +28,8 @@ class ShiftTranscript:
         self._transcripts: dict[UUID, tuple[Transcript, float]] = {}
         self._now_s = 0.0
         self._wrong_floors: list[tuple[float, str]] = []
+        self._legs: list[ev.LegBegun] = []
+        self._ended_s: dict[tuple[str, int], float] = {}
 
     def booked(self, request: str) -> None:
         """A request has been made, and is not over."""
@@ -51,6 +54,10 @@ class ShiftTranscript:
                 self.say(f"{event.finder or 'operator'} {event.told}", event.at_s)
             case ev.SiteIntervention():
                 self.say(f"  person ({event.by}): {told_deed(event)}", event.at_s)
+            case ev.LegBegun():
+                self._legs.append(event)
+            case ev.LegEnded():
+                self._ended_s[event.robot, event.number] = event.at_s
             case ev.RunStarted():
                 since_s = self._now_s if event.at_s is None else event.at_s
                 self._transcripts[event.run] = Transcript(), since_s
@@ -64,6 +71,20 @@ class ShiftTranscript:
         return any(
             at_s >= since_s and told.startswith(f"{elevator} ") for at_s, told in self._wrong_floors
         )
+
+    def why_nobody_was_silent(self, from_s: float, until_s: float) -> str | None:
+        """Why nobody left a question unanswered who was to until then: no leg began, as robots were
+        at others, or had nothing to do. None where one began."""
+        if any(from_s <= leg.at_s <= until_s for leg in self._legs):
+            return None
+        at_work = [
+            f"{leg.robot} was at '{leg.booking}' at {leg.place} since {leg.at_s:.0f} s"
+            for leg in self._legs
+            if leg.at_s < from_s and self._ended_s.get((leg.robot, leg.number), inf) >= from_s
+        ]
+        span = f"from {from_s:g} to {until_s:g} s" if until_s < inf else f"from {from_s:g} s on"
+        why = ", ".join(at_work) or "no robot was at anything"
+        return f"nobody left a question unanswered {span}, as no leg began then: {why}"
 
     def sum_up(self) -> bool:
         """Say what the shift came to; whether everything was done, or not wanted any more."""

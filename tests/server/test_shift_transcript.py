@@ -1,6 +1,7 @@
 """Each line of a shift has the moment before it at which that happened, by the site's clock."""
 
 from datetime import UTC, datetime
+from math import inf
 
 import pytest
 from fleet_events import SITE, LegMaker, asked
@@ -75,3 +76,18 @@ def test_a_wrong_floor_is_one_of_the_elevator_that_the_robot_names() -> None:
     assert told.was_at_wrong_floor("lift1", 50.0)
     assert not told.was_at_wrong_floor("lift1", 110.0)
     assert not told.was_at_wrong_floor("lift", 50.0)
+
+
+def test_that_nobody_was_silent_is_told_with_who_was_at_what_since_when() -> None:
+    told, leg = ShiftTranscript(["tea"]), LegMaker("r1", 1, "tea", LegAction.HAND_OVER)
+    told.tell(leg.begun(400.0))
+    assert told.why_nobody_was_silent(300.0, 450.0) is None
+    assert told.why_nobody_was_silent(500.0, 600.0) == (
+        "nobody left a question unanswered from 500 to 600 s, as no leg began then: "
+        f"r1 was at 'tea' at {leg.begun(400.0).place} since 400 s"
+    )
+    told.tell(leg.ended(700.0))
+    assert told.why_nobody_was_silent(800.0, inf) == (
+        "nobody left a question unanswered from 800 s on, as no leg began then: "
+        "no robot was at anything"
+    )
