@@ -225,6 +225,11 @@ class Base(Effector[BaseBody]):
             self.closed.passed(lane)
         return closed
 
+    def rides_from_here(self, to: BasePose) -> Sequence[Ride]:
+        """The rides to a pose that take no elevator that is closed, if others lead there. Raises
+        `CommandError`."""
+        return self.ways.rides(self.body.pose(), to, self._closed_now)
+
     def rides_round(self, ride: Ride, to: BasePose) -> Sequence[Ride]:
         """The rides to a pose that take no elevator that is closed, nor this one; none if none do.
 

@@ -225,7 +225,7 @@ class BaseExecution(Execution[BaseProgress]):
             case GetIn():
                 return (yield from self._riding.get_in(step))
             case RideUntilThere():
-                yield from self._riding.ride(step)
+                return (yield from self._riding.ride(step))
             case AwaitItem():
                 yield from self._handling.receive(step)
             case AwaitTaken():

@@ -61,12 +61,32 @@ class OtherElevator:
             return False
         if is_dead:
             self._note_dead(step.ride)
-        self._progress.awaits_s.pop(step.ride.elevator, None)
+        self._lay_out(step.ride, steps)
+        return True
+
+    def from_here(self, step: RideUntilThere) -> bool:
+        """Go on from where somebody has put it who has carried it out of the cabin; whether
+        anything leads to where it is to go from there."""
+        left, arrives = self._left()
+        if arrives is None:
+            return False
+        drive = left[arrives]
+        assert isinstance(drive, Drive), "a journey ends with one"
+        try:
+            rides = self._base.rides_from_here(drive.to)
+        except CommandError:
+            return False
+        again = [each for ride in rides for each in steps_of_ride(ride, step.leads)]
+        self._lay_out(step.ride, [*again, *left[arrives:]])
+        return True
+
+    def _lay_out(self, ride: Ride, steps: Sequence[BaseStep]) -> None:
+        """Take these steps from here on, and not that ride."""
+        self._progress.awaits_s.pop(ride.elevator, None)
         done = self._progress.steps[: self._progress.step - 1]
         self._progress.steps = [*done, *steps]
         self._base.elevators.withdraw()
         self.announce(steps)
-        return True
 
     def announce(self, steps: Sequence[BaseStep]) -> None:
         """Say to which elevator it is on its way next, if to any."""
@@ -100,8 +120,7 @@ class OtherElevator:
 
     def _rest(self, step: GetIn) -> Sequence[BaseStep]:
         """What is left to do if others ride to where this journey ends; nothing if none do."""
-        left = self._progress.steps[self._progress.step - 1 :]
-        arrives = next((n for n, each in enumerate(left) if _ends_journey(left, n)), None)
+        left, arrives = self._left()
         if arrives is None:
             return ()
         drive = left[arrives]
@@ -114,6 +133,11 @@ class OtherElevator:
             return ()
         again = [each for ride in rides for each in steps_of_ride(ride, step.leads)]
         return [*again, *left[arrives:]] if rides else ()
+
+    def _left(self) -> tuple[Sequence[BaseStep], int | None]:
+        """The step under way and those after it, and which of them ends the journey."""
+        left = self._progress.steps[self._progress.step - 1 :]
+        return left, next((n for n, _ in enumerate(left) if _ends_journey(left, n)), None)
 
 
 def _ends_journey(steps: Sequence[BaseStep], number: int) -> bool:

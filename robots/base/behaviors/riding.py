@@ -69,17 +69,25 @@ class Riding:
             )
         return True
 
-    def ride(self, step: RideUntilThere) -> Routine[None]:
+    def ride(self, step: RideUntilThere) -> Routine[bool]:
         """Stay until the cabin is open at the floor where the ride ends. Raises `Interruption`.
 
-        With whom it leads it leaves once they are in it, too, where there is room for both.
+        With whom it leads it leaves once they are in it, too, where there is room for both. False
+        where somebody has carried it out meanwhile: what is left to do is another then.
         """
         if _has_company(step) and not self.is_over(step.ride):
             yield from self._let_in(step.ride)
-        yield from self._await(step.ride, aboard=True, until=lambda: self.is_over(step.ride))
+        yield from self._await(
+            step.ride,
+            aboard=True,
+            until=lambda: self.is_over(step.ride) or self._is_carried_out(step.ride),
+        )
+        if not self.is_over(step.ride) and self._other.from_here(step):
+            return False
         self._other.took(step.ride)
         # It may have asked once more between its arrival and the scan that shows it.
         self._base.elevators.withdraw()
+        return True
 
     def get_out(self, *, rides: bool) -> Routine[None]:
         """Leave the cabin in which it is, if any: nobody else could ride.
@@ -103,6 +111,15 @@ class Riding:
         """Whether the cabin is open at the floor where a ride ends."""
         base = self._base
         return base.sees_out() and base.ways.floor(base.body.pose()) == ride.to_floor
+
+    def _is_carried_out(self, ride: Ride) -> bool:
+        """Whether it knows that it stands on a floor, well out of the cabin that it was in."""
+        base = self._base
+        if base.whereabouts.is_lost:
+            return False
+        here = base.body.pose()
+        far = here.distance_m(ride.inside) > 2 * CABIN_M
+        return far and base.sees_out() and base.ways.elevator_at(here) is None
 
     def is_led_in(self, ride: Ride) -> bool:
         """Whether whom it leads is in the cabin with it."""
