@@ -2,6 +2,7 @@
 
 import re
 
+from mend.dialogue.other_scripts import as_written
 from mend.dialogue.worded import Worded, worded
 
 _COUNTS = (
@@ -15,14 +16,17 @@ _COUNTS = (
 NAMELESS = "thing_to_be_brought"
 """What is carried for people who have only pointed at it."""
 _NAMELESS = worded("thing to be brought")
+_MARK = re.compile(r"(?<=\w)(?<!\bxn)(?<!\bq0)--[0-9a-f]{8}\b")
+"""What only tells equal names apart; but for the beginnings of words of `other_scripts`."""
 
 
 def spoken(identifier: str) -> str:
     """A text with identifiers as people say it: `sugar_bowl` is a sugar bowl.
 
-    What only tells equal names apart is not said: `cup_of_tea--0afba7d8` is a cup of tea.
+    What only tells equal names apart is not said: `cup_of_tea--0afba7d8` is a cup of tea. Words of
+    other scripts are as they were written (`other_scripts`).
     """
-    without_mark = re.sub(r"(?<=\w)--[0-9a-f]{8}\b", "", identifier)
+    without_mark = as_written(_MARK.sub("", identifier))
     if without_mark == NAMELESS:
         return _NAMELESS
     return re.sub(r"(?<=\w)[_-](?=\w)", " ", without_mark)

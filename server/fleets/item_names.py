@@ -4,6 +4,7 @@ import re
 from typing import TYPE_CHECKING
 from zlib import crc32
 
+from mend.dialogue.other_scripts import in_name
 from mend.dialogue.spoken import NAMELESS
 from mend.fleet.requests import Transport
 from mend.tasks.plain_letters import plain_letters
@@ -25,8 +26,7 @@ def item_of(what: str, booking: str) -> str:
     asked, mark = _plain(booking), f"{crc32(booking.encode()):08x}"
     if _is_pointed_at(what):
         return f"{NAMELESS}--{mark}"
-    words = _words(what)
-    words = words if words[:1].isalpha() else f"item_{words}".rstrip("_")
+    words = _words(what) or "item"
     if words == asked == booking:
         return words
     if _MADE.search(booking) or f"_{asked}_" in f"_{words}_":
@@ -43,7 +43,7 @@ def made_name(request: "AnyRequest", mark: str) -> str:
     words = ""
     if isinstance(request, Transport) and not _is_pointed_at(request.what):
         words = _words(request.what)
-    return f"{words if words[:1].isalpha() else request.kind}--{mark}"
+    return f"{words or request.kind}--{mark}"
 
 
 def _is_pointed_at(what: str) -> bool:
@@ -52,7 +52,7 @@ def _is_pointed_at(what: str) -> bool:
 
 
 def _words(what: str) -> str:
-    return _plain(_ARTICLE.sub("", what.strip()))[:_MOST_OF_WHAT].strip("_")
+    return in_name(_ARTICLE.sub("", what.strip()), _MOST_OF_WHAT)
 
 
 def _plain(text: str) -> str:

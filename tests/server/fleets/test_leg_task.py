@@ -59,7 +59,9 @@ def test_who_fetches_something_out_of_a_basket_says_whose_it_is() -> None:
         ("A cup", "daily/3", "cup-daily_3--32033c54"),
         ("tea", "p-6", "tea-p_6--44207e34"),
         ("tea", "p_6", "tea-p_6"),
-        ("3 keys", "k", "item_3_keys-k"),
+        ("3 keys", "k", "q0--3_keys-k"),
+        ("ключи", "k", "xn--h1add2c8a-k"),
+        ("синий ящик", "k", "xn--h1aados_xn--h1ae7bxa-k"),
         ("Schlüssel für 7002", "k", "Schlussel_fur_7002-k"),
         ("a cup of tea", "tea", "cup_of_tea--8e86d7b2"),
         ("a cup of tea", "te", "cup_of_tea-te"),
@@ -77,7 +79,7 @@ def test_a_thing_is_called_as_people_do_as_far_as_names_go(what, booking, called
 
 @pytest.mark.parametrize(
     ("what", "name"),
-    [("the blue parcel", "blue_parcel"), ("this", "transport"), ("3 keys", "transport")],
+    [("the blue parcel", "blue_parcel"), ("this", "transport"), ("3 keys", "q0--3_keys")],
 )
 def test_a_request_that_nobody_names_is_called_after_what_is_brought(what: str, name: str) -> None:
     request = Transport(name="asked", what=what, origin="101", destination="102")

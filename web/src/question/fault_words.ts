@@ -1,5 +1,6 @@
 // What went wrong, in a sentence for somebody who has never seen the robot.
 import type { DialogueView } from "../wire/types";
+import { asWritten } from "../words/otherScripts";
 import { t } from "../words/words";
 
 type About = Pick<DialogueView, "issue" | "object" | "name" | "robot"> & Partial<Pick<DialogueView, "detection">>;
@@ -45,7 +46,8 @@ export function faultInWords(about: About): string {
 
 /** A name of the scene or the tree as people say it, without what only tells it from others of the same words. */
 export function spoken(identifier: string): string {
-  return identifier.replaceAll(/(?<=\w)--[0-9a-f]{8}(?![0-9A-Za-z_])/g, "").replaceAll(/[_-]/g, " ");
+  const unmarked = identifier.replaceAll(/(?<=\w)(?<!\bxn|\bq0)--[0-9a-f]{8}(?![0-9A-Za-z_])/g, "");
+  return asWritten(unmarked).replaceAll(/[_-]/g, " ");
 }
 
 /** What robots call what they sense with. */
