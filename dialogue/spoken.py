@@ -29,7 +29,14 @@ def spoken(identifier: str) -> str:
     without_mark = as_written(_MARK.sub("", identifier))
     if without_mark == NAMELESS:
         return _NAMELESS
-    return re.sub(r"(?<=\w)[_-](?=\w)", " ", without_mark)
+    if without_mark.startswith(f"{NAMELESS}-"):
+        place = _without_joints(without_mark.removeprefix(f"{NAMELESS}-"))
+        return worded("thing to be brought from {place}", place=place)
+    return _without_joints(without_mark)
+
+
+def _without_joints(name: str) -> str:
+    return re.sub(r"(?<=\w)[_-](?=\w)", " ", name)
 
 
 def called(robots: str) -> str:

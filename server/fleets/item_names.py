@@ -15,17 +15,22 @@ if TYPE_CHECKING:
 _ARTICLE = re.compile(r"^(the|a|an)\s+", re.IGNORECASE)
 _NO_WORD = re.compile(r"[^A-Za-z0-9]+")
 _MOST_OF_WHAT = 31
+_MOST_OF_PLACE = 32
 _POINTED_AT = frozenset(("this", "that", "it", "these", "those", "them"))
 """What only whoever stands before it knows."""
 _MADE = re.compile(r"--[0-9a-f]{8}(/[0-9]+)?$")
 """Ends the name of a request that Mend or its console has made up: nobody knows it by that."""
 
 
-def item_of(what: str, booking: str) -> str:
-    """What robots call a thing: as a person does, as far as names go, and each its own."""
+def item_of(what: str, booking: str, origin: str = "") -> str:
+    """What robots call a thing: as a person does, as far as names go, and each its own.
+
+    What somebody has only pointed at is told from others by its `origin`, where it is fetched.
+    """
     asked, mark = _plain(booking), f"{crc32(booking.encode()):08x}"
     if _is_pointed_at(what):
-        return f"{NAMELESS}--{mark}"
+        place = in_name(origin, _MOST_OF_PLACE)
+        return f"{NAMELESS}-{place}--{mark}" if place else f"{NAMELESS}--{mark}"
     words = _words(what) or "item"
     if words == asked == booking:
         return words

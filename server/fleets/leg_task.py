@@ -138,7 +138,7 @@ def taken_out(dispatcher: Dispatcher) -> dict[str, list[str]]:
     requests = {view.name: view.request for view in dispatcher.views()} if taken else {}
     return {
         robot: [
-            item_of(request.what, name)
+            item_of(request.what, name, request.origin)
             for name in sorted(names)
             if isinstance(request := requests.get(name), Transport)
         ]
@@ -152,8 +152,8 @@ def _parameters(request: AnyRequest, booking: str) -> dict[str, Any]:
             return {"message": message}
         case Escort(person=person):
             return {"person": person}
-        case Transport(what=what):
-            return {"item": item_of(what, booking)}
+        case Transport(what=what, origin=origin):
+            return {"item": item_of(what, booking, origin)}
         case _:
             return {}
 

@@ -4,6 +4,7 @@ from uuid import UUID
 
 import pytest
 
+from mend.dialogue.spoken import the
 from mend.errors import WrongInputError
 from mend.fleet.dispatch.leg import Leg
 from mend.fleet.requests import (
@@ -85,6 +86,17 @@ def test_a_request_that_nobody_names_is_called_after_what_is_brought(what: str, 
     request = Transport(name="asked", what=what, origin="101", destination="102")
     assert made_name(request, "0afba7d8") == f"{name}--0afba7d8"
     assert made_name(GoToRoom(name="asked", place="101"), "0afba7d8") == "go_to_room--0afba7d8"
+
+
+def test_things_that_people_only_point_at_are_told_apart_by_where_they_are_fetched() -> None:
+    names = [
+        item_of("this", f"this--0afba7d{n}", place) for n, place in enumerate(("F1/1", "F2/3"))
+    ]
+    assert [the(name) for name in names] == [
+        "the thing to be brought from F1 1",
+        "the thing to be brought from F2 3",
+    ]
+    assert all(len(item_of("it", "b" * 64, "p" * 64)) <= 64 for _ in names)
 
 
 def test_the_same_thing_is_meant_where_it_is_fetched_and_where_it_is_brought() -> None:
