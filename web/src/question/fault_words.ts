@@ -1,6 +1,6 @@
 // What went wrong, in a sentence for somebody who has never seen the robot.
 import type { DialogueView } from "../wire/types";
-import { asWritten } from "../words/otherScripts";
+import { asWritten } from "../words/other_scripts";
 import { t } from "../words/words";
 
 type About = Pick<DialogueView, "issue" | "object" | "name" | "robot"> & Partial<Pick<DialogueView, "detection">>;
