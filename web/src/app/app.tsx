@@ -10,6 +10,7 @@ import { session } from "../state/service";
 import { ConnectionBar } from "./connection_bar";
 import { Header } from "./header";
 import { besideRobot, helperName, pushOn } from "../state/preferences";
+import { MissedBar } from "../calling/missed_bar";
 import { SoundBar } from "../calling/sound_bar";
 import { later } from "./later";
 import { type Route, route } from "./router";
@@ -57,6 +58,7 @@ export function App() {
       <div class="top">
         <Header />
         <ConnectionBar />
+        <MissedBar />
         <SoundBar />
       </div>
       <Announcer />
