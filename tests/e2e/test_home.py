@@ -77,7 +77,7 @@ async def test_a_robot_that_is_gone_calls_on_every_page_until_somebody_knows(
         await page.goto("/")
         await expect(page.get_by_text("One run goes on.")).to_be_visible()
         await page.get_by_role("link", name="Runs", exact=True).click()
-    told = page.get_by_role("alert").filter(has_text="demo is gone, and its run waits for it.")
+    told = page.get_by_role("status").filter(has_text="demo is gone, and its run waits for it.")
     await expect(told).to_be_visible()
     await expect(page).to_have_title("(1) Mend")
     await expect(told.get_by_role("link", name="Show the run")).to_have_attribute(

@@ -8,7 +8,7 @@ export function MissedBar() {
   const gone = missed.value;
   const [first] = gone;
   return (
-    <div class="missed-bar" role="alert">
+    <div class="missed-bar" role="status" aria-live="assertive">
       {first !== undefined && (
         <>
           <p>
