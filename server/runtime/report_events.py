@@ -103,7 +103,7 @@ class ReportEvents:
                 step_name=body.name,
                 phase=body.phase,
                 object=self._context.state.tree.leaf_definition(execution.leaf).object,
-            )
+            ),
         ]
 
     def _too_late_for_help(self, leaf: int, phase: str | None) -> list[ev.Event]:

@@ -202,7 +202,9 @@ async def test_phone_shows_question_picture_and_answers_at_once(stage: Stage) ->
     await stage.runs.open(stage.run, "dropped")
     for width, height in ((390, 844), (360, 640)):
         await page.set_viewport_size({"width": width, "height": height})
-        await expect(page.get_by_role("heading", level=2)).to_be_in_viewport(ratio=1)
+        await expect(page.locator(".question").get_by_role("heading", level=2)).to_be_in_viewport(
+            ratio=1
+        )
         await expect(page.get_by_role("img", name="camera saw")).to_be_in_viewport(ratio=0.7)
         for button in await page.locator(".way").all():
             await expect(button).to_be_in_viewport(ratio=1)
