@@ -202,6 +202,7 @@ async def _open(
     push = Push(
         journal,
         runtime.dialogues,
+        runtime,
         access,
         settings,
         settings.push_key_path if recover else None,

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterable
 from typing import Literal, Protocol
-from uuid import UUID
+from uuid import UUID, uuid4
 
 from mend.errors import RefusalError
 from mend.server.background import Endless
@@ -12,6 +12,7 @@ from mend.server.journal.journal import Journal, JournalClosedError
 from mend.server.journal.subscriptions import PrunedEventsError, SubscriptionOverflowError
 from mend.server.push.messages import (
     CallMessage,
+    RobotLostMessage,
     WithdrawnMessage,
     sentences_with_room,
     shortened,
@@ -19,7 +20,7 @@ from mend.server.push.messages import (
 from mend.server.push.outbox import Letter
 from mend.server.push.subscription import PushSubscription
 from mend.server.push.subscriptions import PushSubscriptions
-from mend.server.runtime.views import DialogueView, PromptView
+from mend.server.runtime.views import DialogueView, PromptView, RunSummary
 from mend.tasks.resolution import Resolution
 
 TYPE = re.compile(r'"type":"(\w+)"')
@@ -30,13 +31,16 @@ HELD_S = 60.0
 WITHDRAWN_S = 600.0
 """So long it is worth telling a device that it is needed no more."""
 
+LOST_S = 600.0
+"""So long a robot that is gone is worth calling about; who comes later sees it."""
+
 OPEN_AT_ONCE = 1000
 
 ENDS_HOLDING = ("node_done", "node_reset", "node_left_out")
 ENDS_RUN = ("run_finished", "run_failed", "run_aborted")
 TOLD = frozenset(
     {"prompt", "answered", "claimed", "released", "resolved", "dialogue_closed"}
-    | set(ENDS_HOLDING) | set(ENDS_RUN)
+    | {"robot_lost", "robot_back"} | set(ENDS_HOLDING) | set(ENDS_RUN)
 )  # fmt: skip
 """The types of events that change who is called."""
 
@@ -49,6 +53,12 @@ class Dialogues(Protocol):
     ) -> list[DialogueView]: ...
 
     async def view(self, dialogue: UUID) -> DialogueView: ...
+
+
+class Runs(Protocol):
+    """Where a run is found, as it is now."""
+
+    async def run_summary(self, run: UUID) -> RunSummary: ...
 
 
 class Letters(Protocol):
@@ -68,17 +78,20 @@ class Calling:
         self,
         journal: Journal,
         dialogues: Dialogues,
+        runs: Runs,
         subscriptions: PushSubscriptions,
         letters: Letters,
         monotonic: Callable[[], float],
     ) -> None:
         self._journal = journal
         self._dialogues = dialogues
+        self._runs = runs
         self._subscriptions = subscriptions
         self._letters = letters
         self._monotonic = monotonic
         self._called: dict[UUID, set[str]] = {}
         self._held: dict[UUID, tuple[UUID, str]] = {}
+        self._lost: dict[tuple[UUID, str], UUID] = {}
         self._endless = Endless("calling helpers", monotonic)
 
     async def recover(self) -> None:
@@ -124,8 +137,14 @@ class Calling:
                     self._call_off(dialogue, event.robot, "It is no longer needed.")
             case ev.NodeDone() | ev.NodeReset() | ev.NodeLeftOut():
                 self._let_go(event.run, event.node)
+            case ev.RobotLost(run=run, robot=robot):
+                await self._miss(run, robot)
+            case ev.RobotBack(run=run, robot=robot):
+                self._miss_no_more(run, robot, "It is there again.")
             case ev.RunFinished() | ev.RunFailed() | ev.RunAborted():
                 self._let_go(event.run, None)
+                for run, robot in [each for each in self._lost if each[0] == event.run]:
+                    self._miss_no_more(run, robot, "Its run is over.")
 
     async def _ask(self, dialogue: UUID) -> None:
         """Call whoever is asked now, and nobody else any more."""
@@ -158,6 +177,25 @@ class Calling:
                 del self._held[dialogue]
                 self._call_off(dialogue, "", "It is done.")
 
+    async def _miss(self, run: UUID, robot: str) -> None:
+        """Call everybody who helps about a robot that is gone, unless a script answers its run."""
+        try:
+            live = (await self._runs.run_summary(run)).live
+        except RefusalError:
+            return
+        if not live or (run, robot) in self._lost:
+            return
+        await self._subscriptions.let_go()
+        devices = self._subscriptions.of_helper(None)
+        call = self._lost[run, robot] = uuid4()
+        self._call(devices, RobotLostMessage(dialogue=call, run=run, robot=robot), LOST_S)
+        self._called[call] = {each.id for each in devices}
+
+    def _miss_no_more(self, run: UUID, robot: str, why: str) -> None:
+        call = self._lost.pop((run, robot), None)
+        if call is not None:
+            self._call_off(call, robot, why)
+
     def _call_off(self, dialogue: UUID, robot: str, why: str) -> None:
         called = self._called.pop(dialogue, set())
         self._tell(called, _withdrawn(dialogue, robot, why), WITHDRAWN_S)
@@ -175,7 +213,7 @@ class Calling:
     def _call(
         self,
         devices: Iterable[PushSubscription],
-        message: CallMessage | WithdrawnMessage,
+        message: CallMessage | RobotLostMessage | WithdrawnMessage,
         within_s: float,
     ) -> None:
         letter = Letter(message.dialogue.hex, message, self._monotonic() + within_s)

@@ -41,6 +41,15 @@ class WithdrawnMessage(PushModel):
     text: str
 
 
+class RobotLostMessage(PushModel):
+    """A robot is gone while a run waits for it; it is called off by `dialogue`, as calls are."""
+
+    type: Literal["robot_lost"] = "robot_lost"
+    dialogue: UUID
+    run: UUID
+    robot: str
+
+
 class TrialMessage(PushModel):
     """A push that a device has asked for, to see whether pushes reach it."""
 
@@ -48,7 +57,9 @@ class TrialMessage(PushModel):
     nonce: str
 
 
-PushMessage = Annotated[CallMessage | WithdrawnMessage | TrialMessage, Field(discriminator="type")]
+PushMessage = Annotated[
+    CallMessage | RobotLostMessage | WithdrawnMessage | TrialMessage, Field(discriminator="type")
+]
 
 
 def sentences_with_room(text: str, wordings: Sequence[Wording]) -> list[WordedSentence]:

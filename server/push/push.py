@@ -11,7 +11,7 @@ from mend.errors import MendError, NotFoundError, UnavailableError, WrongInputEr
 from mend.server.access.access import Access
 from mend.server.access.principal import Caller
 from mend.server.journal.journal import Journal
-from mend.server.push.calling import Calling, Dialogues
+from mend.server.push.calling import Calling, Dialogues, Runs
 from mend.server.push.messages import TrialMessage
 from mend.server.push.outbox import Outbox
 from mend.server.push.push_key import push_key
@@ -34,6 +34,7 @@ class Push:
         self,
         journal: Journal,
         dialogues: Dialogues,
+        runs: Runs,
         access: Access,
         settings: Settings,
         key_file: Path | None,
@@ -49,7 +50,9 @@ class Push:
             journal, access, key.public, settings.limits, utc_now
         )
         self._outbox = Outbox(self._sender, self._forget_later, monotonic)
-        self._calling = Calling(journal, dialogues, self.subscriptions, self._outbox, monotonic)
+        self._calling = Calling(
+            journal, dialogues, runs, self.subscriptions, self._outbox, monotonic
+        )
         self._tasks: set[asyncio.Task[None]] = set()
 
     @property

@@ -94,7 +94,9 @@ class DialogueDriver:
         if await self._tell_of_suspicion(dialogue):
             return True
         if dialogue.awaiting is not None:
-            if proxy.free or proxy.interruptible:
+            # Nobody reaches in before the arm has drawn back and the robot has looked.
+            looked = not dialogue.raised.interrupts or dialogue.first_look is not None
+            if looked and (proxy.free or proxy.interruptible):
                 self._promises.have_kept(dialogue, dialogue.awaiting, proxy)
             self._looks.watch_for_help(dialogue, dialogue.awaiting, proxy)
             return False

@@ -3,6 +3,7 @@
 import logging
 from uuid import UUID, uuid4
 
+from mend.robots.execution.phase import Phase
 from mend.robots.link.jpeg import NotJpegError, read_jpeg
 from mend.robots.link.messages import (
     ClipTaken,
@@ -92,6 +93,7 @@ class ReportEvents:
         if execution is None:
             return []
         return [
+            *self._too_late_for_help(execution.leaf, body.phase),
             ev.StepStarted(
                 **self._context.stamp(),
                 **self.node(execution.leaf),
@@ -101,8 +103,20 @@ class ReportEvents:
                 step_name=body.name,
                 phase=body.phase,
                 object=self._context.state.tree.leaf_definition(execution.leaf).object,
-            )
+            ),
         ]
+
+    def _too_late_for_help(self, leaf: int, phase: str | None) -> list[ev.Event]:
+        """Nobody can help to place what the robot lets go of: a question about that lapses.
+
+        Not where a script answers: as the clock leaps from report to report, its answer may have
+        been due before this one.
+        """
+        state = self._context.state
+        asked = state.dialogue_of(leaf)
+        if asked is None or asked.raised.interrupts or phase != Phase.RELEASE or not state.live:
+            return []
+        return [self._dialogues.abort(asked)]
 
     def _issue_detected(
         self, proxy: RobotProxy, body: IssueDetected, pictures: dict[UUID, bytes]

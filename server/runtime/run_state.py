@@ -56,6 +56,10 @@ class RunState:
     ) -> None:
         self.started = started
         self.request = RunRequest.model_validate(started.options)
+        script = started.script or {}
+        said = self.request.answers
+        self.live = said == "live" or (said is None and not script.get("answers"))
+        """Whether people answer what its robots ask, and are called."""
         self.scene = Scene.model_validate(started.scene, strict=False)
         at = {name: each.pose for name, each in self.scene.places.items()}
         self.places = {name: (each.x, each.y, each.z or 0.0) for name, each in at.items()}

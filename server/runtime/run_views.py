@@ -50,6 +50,7 @@ def summary(state: RunState, time: float, trouble: str | None) -> RunSummary:
         result=state.result,
         trouble=None if state.status.ended else trouble,
         waits=waits_of(state),
+        live=state.live,
     )
 
 

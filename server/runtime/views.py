@@ -232,6 +232,8 @@ class RunSummary(View):
     """Why the run goes no further for now: the journal cannot be written."""
     waits: list[WaitView] = []
     """The leaves before which a robot waits to be let go."""
+    live: bool = True
+    """Whether people answer what its robots ask; where a script does, nobody is called."""
 
 
 class RunView(RunSummary):

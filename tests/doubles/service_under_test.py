@@ -141,7 +141,7 @@ def build(
         poses=poses,
         access=access,
         deeds=deeds,
-        push=Push(journal, runs.dialogues, access, chosen, None, utc_now, now),
+        push=Push(journal, runs.dialogues, runs, access, chosen, None, utc_now, now),
         speech_abilities=speech,
         refusals=refusals,
         wall_time_s=wall_time_s,

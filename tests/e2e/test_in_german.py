@@ -14,7 +14,7 @@ async def test_a_question_is_answered_to_its_end_and_then_in_english(stage: Stag
     await expect(page.locator("html")).to_have_attribute("lang", "de")
     await expect(page.get_by_text("Kein Roboter fragt etwas")).to_be_visible()
     dialogue = await stage.runs.open(stage.run, "missed")
-    heading = page.get_by_role("heading", level=2)
+    heading = page.locator(".question").get_by_role("heading", level=2)
     await expect(heading).to_have_text("„yellow bar“ auf den Tisch zurücklegen")
     await expect(page.get_by_role("alert").first).to_contain_text(
         "Legen Sie es auf den Tisch zurück?"
@@ -38,7 +38,9 @@ async def test_what_a_robot_says_in_words_of_its_own_is_marked_as_english(stage:
     page = await stage.open_page(locale="de-DE", connected="Verbunden")
     squeaks = DETECTION.model_copy(update={"explanation": "the wheel squeaks"})
     await stage.runs.open(stage.run, "dropped", detection=squeaks)
-    await expect(page.get_by_role("heading", level=2)).to_contain_text("zurücklegen")
+    await expect(page.locator(".question").get_by_role("heading", level=2)).to_contain_text(
+        "zurücklegen"
+    )
     await expect(page.locator("[lang=en]", has_text="the wheel squeaks")).to_be_visible()
 
 

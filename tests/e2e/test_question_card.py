@@ -26,9 +26,11 @@ async def test_question_is_shown_and_answered_with_a_button(
     await service.runtime.intervene(
         run.id, Intervention.model_validate({"act": "steal", "object": "green_leg"})
     )
-    await expect(page.get_by_role("heading", level=2)).to_contain_text("green leg", timeout=60_000)
+    await expect(page.locator(".question").get_by_role("heading", level=2)).to_contain_text(
+        "green leg", timeout=60_000
+    )
     await page.get_by_role("button", name="YES").click()
-    await expect(page.get_by_role("heading", level=2)).to_be_hidden()
+    await expect(page.locator(".question").get_by_role("heading", level=2)).to_be_hidden()
 
 
 @pytest.mark.parametrize(

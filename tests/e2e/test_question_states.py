@@ -112,6 +112,24 @@ async def test_card_closes_by_itself_and_says_why(lasting_stage: Stage) -> None:
         await expect(told).to_be_empty()
 
 
+async def test_a_robot_that_does_not_wait_says_so_and_takes_help_at_once(
+    lasting_stage: Stage,
+) -> None:
+    page = await lasting_stage.open_page()
+    told = page.get_by_role("status", name="What became of questions")
+    dialogue = await lasting_stage.runs.open(lasting_stage.run, "positioning", interrupts=False)
+    await expect(page.get_by_text("It does not wait")).to_be_visible()
+    await expect(page.get_by_role("timer")).to_have_count(0)
+    await expect(page.get_by_role("button", name="More time")).to_have_count(0)
+    await lasting_stage.runs.call(dialogue, "abort")
+    await expect(told).to_contain_text("the robot did not wait for an answer")
+    dialogue = await lasting_stage.runs.open(lasting_stage.run, "positioning", interrupts=False)
+    await page.get_by_role("button", name="YES").click()
+    await expect(page.get_by_role("button", name="Undo")).to_have_count(0)
+    await expect(page.get_by_role("button", name="YES")).to_have_count(0)
+    assert lasting_stage.runs.dialogue_now(dialogue).answered_by == "anna"
+
+
 async def test_more_time_moves_the_deadline(lasting_stage: Stage) -> None:
     page = await lasting_stage.open_page()
     lasting_stage.runs.deadline_s = 24.0
@@ -184,7 +202,9 @@ async def test_phone_shows_question_picture_and_answers_at_once(stage: Stage) ->
     await stage.runs.open(stage.run, "dropped")
     for width, height in ((390, 844), (360, 640)):
         await page.set_viewport_size({"width": width, "height": height})
-        await expect(page.get_by_role("heading", level=2)).to_be_in_viewport(ratio=1)
+        await expect(page.locator(".question").get_by_role("heading", level=2)).to_be_in_viewport(
+            ratio=1
+        )
         await expect(page.get_by_role("img", name="camera saw")).to_be_in_viewport(ratio=0.7)
         for button in await page.locator(".way").all():
             await expect(button).to_be_in_viewport(ratio=1)

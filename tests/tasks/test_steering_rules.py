@@ -1,7 +1,10 @@
 """What may be said of a node, and why not, by example."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
+from languages_of_console import untold
 from trees import and_, node_called, or_, running_tree, then
 
 from mend.tasks.autonomy import AutonomyLevel
@@ -190,3 +193,28 @@ def test_the_last_word_says_what_is_next() -> None:
     assert why(about, "not_next", "a") == "nobody has asked for 'a' next"
     about.tree.start(2, "pr2")
     assert steering.preferred is None
+
+
+def refused_of(about: Steered) -> Iterator[str]:
+    for node in range(len(about.tree.nodes)):
+        for act in SteeringAct:
+            if (why := why_refused(about, act, node)) is not None:
+                yield why
+
+
+def test_every_refusal_is_in_the_languages_of_the_console() -> None:
+    tree = running_tree(then("a", or_("b", "c"), and_("d", "e")))
+    steering = Steering(tree)
+    about = Steered(tree, steering)
+    found = [*refused_of(about), str(why_level_is_refused(steering, steering.level))]
+    steering.set_breakpoint(node_called(tree, "d"), ANN)
+    steering.prefer(node_called(tree, "a"), ANN)
+    for name in ("a", "b", "d"):
+        tree.start(node_called(tree, name), "pr2")
+        found += refused_of(about)
+        tree.finish(node_called(tree, name))
+        found += refused_of(about)
+    tree.running = False
+    found += refused_of(about)
+    assert len(set(found)) > 40
+    assert untold(sorted(set(found)), ["clauses", "refusals"]) == []

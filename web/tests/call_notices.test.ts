@@ -2,7 +2,7 @@
 import { describe, expect, it } from "vitest";
 import { deviceName } from "../src/calling/device_name";
 import { type State, verdict } from "../src/calling/findings";
-import { callNotice, OVER, overNotice } from "../src/calling/notices";
+import { callNotice, lostNotice, OVER, overNotice } from "../src/calling/notices";
 import { takeSentences } from "../src/words/said";
 
 const CALL = { dialogue: "d", run: "r", robot: "pr2-1a2b3c4d", text: "May I go on?", sentences: [], urgent: false };
@@ -38,6 +38,14 @@ describe("a call", () => {
     const { title, options } = overNotice({ type: "withdrawn", dialogue: "d", robot: "pr2", text: "ben answered yes." });
     expect(title).toBe("pr2: you are not needed now");
     expect(options).toMatchObject({ tag: OVER, silent: true, body: "ben answered yes." });
+  });
+});
+
+describe("a robot that is gone", () => {
+  it("is told by what it is called off by", () => {
+    const { title, options } = lostNotice({ dialogue: "d", robot: "pr2-1a2b3c4d" }, false);
+    expect(title).toBe("PR2 is gone");
+    expect(options).toMatchObject({ tag: "d", requireInteraction: true, silent: false });
   });
 });
 

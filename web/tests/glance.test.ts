@@ -10,7 +10,7 @@ function run(id: string, status: RunStatus, hoursAgo = 1): RunSummary {
   const ended = status === "running" || status === "paused" ? null : new Date(NOW - hoursAgo * HOUR_MS).toISOString();
   return {
     id, status, ended, tree: "tea_table", world: "workcell", scenario: null, seed: 1, speed: 1, time: 3,
-    started: new Date(NOW - 30 * HOUR_MS).toISOString(), robots: [], result: null, trouble: null, waits: [],
+    started: new Date(NOW - 30 * HOUR_MS).toISOString(), robots: [], result: null, trouble: null, waits: [], live: true,
   };
 }
 

@@ -33,6 +33,16 @@ describe("what rings for a helper", () => {
   });
 });
 
+describe("a robot that is gone", () => {
+  const lost = [{ robot: "ada", run: "r" }];
+
+  it("calls everybody, and not those who know", () => {
+    const [ring] = ringing([], [], "anna", new Set(), lost);
+    expect(ring).toEqual({ key: "lost ada r", urgent: false });
+    expect(ringing([], [], "anna", new Set(["lost ada r"]), lost)).toEqual([]);
+  });
+});
+
 class Bench {
   rung: boolean[] = [];
   waits: number[] = [];

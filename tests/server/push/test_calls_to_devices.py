@@ -20,7 +20,7 @@ from mend.server.push.messages import CallMessage
 from mend.server.push.outbox import Letter
 from mend.server.push.subscription import DeviceKeys, PushSubscription
 from mend.server.push.subscriptions import Device, PushSubscriptions
-from mend.server.runtime.views import DialogueView, PromptView
+from mend.server.runtime.views import DialogueView, PromptView, RunStatus, RunSummary
 from mend.tasks.resolution import Resolution
 
 NOW = datetime(2026, 5, 4, 12, tzinfo=UTC)
@@ -38,6 +38,7 @@ class Bench:
     calling: Calling
     dialogues: dict[UUID, DialogueView]
     put: list[tuple[str, Any]] = field(default_factory=list)
+    live: bool = True
 
     def is_now(self, **changes: Any) -> None:
         self.dialogues[DIALOGUE] = self.dialogues[DIALOGUE].model_copy(update=changes)
@@ -46,7 +47,8 @@ class Bench:
         """What each device is told then: its kind, and the text."""
         self.put.clear()
         await self.calling.take(event)
-        return sorted((device, each.type, each.text) for device, each in self.put)
+        told = [(device, each.type, getattr(each, "text", "")) for device, each in self.put]
+        return sorted(told)
 
     async def ask(self, to: str | None = None, **changes: Any) -> list[tuple[str, str, str]]:
         self.is_now(awaiting="answer", prompt=prompt(to), **changes)
@@ -87,11 +89,21 @@ async def bench() -> AsyncIterator[Bench]:
                 raise NotFoundError("there is no such dialogue")
             return dialogues[dialogue]
 
+    class Runs:
+        async def run_summary(self, run: UUID) -> RunSummary:
+            if run != RUN:
+                raise NotFoundError("there is no such run")
+            return RunSummary(
+                id=run, tree="eket", world="tabletop", scenario=None, seed=1, speed=1.0,
+                status=RunStatus.RUNNING, time=3.0, started=NOW, robots=["pr2"], result=None,
+                live=bench.live,
+            )  # fmt: skip
+
     class Letters:
         def put(self, device: PushSubscription, letter: Letter) -> None:
             bench.put.append((device.device, letter.message))
 
-    calling = Calling(journal, Found(), subscriptions, Letters(), lambda: 100.0)
+    calling = Calling(journal, Found(), Runs(), subscriptions, Letters(), lambda: 100.0)
     bench = Bench(calling, dialogues)
     yield bench
     journal.close()
@@ -178,3 +190,30 @@ async def test_a_dialogue_that_cannot_be_found_calls_nobody(bench: Bench) -> Non
     bench.dialogues.clear()
     asked = ev.Prompt(**OF, prompt=PROMPT, version=1, kind="ask", text="May I?")
     assert await bench.take(asked) == []
+
+
+def lost(run: UUID = RUN) -> ev.RobotLost:
+    return ev.RobotLost(time=4.0, wall_time=NOW, run=run, robot="pr2", reason="it is silent")
+
+
+async def test_a_lost_robot_calls_everybody_until_it_is_back(bench: Bench) -> None:
+    called = [(device, "robot_lost", "") for device in ("phone", "tablet", "watch")]
+    assert await bench.take(lost()) == called
+    assert await bench.take(lost()) == [], "they know"
+    back = ev.RobotBack(time=5.0, wall_time=NOW, run=RUN, robot="pr2", boot="b", continues=False)
+    over = ("withdrawn", "It is there again.")
+    assert await bench.take(back) == [("phone", *over), ("tablet", *over), ("watch", *over)]
+    assert await bench.take(back) == []
+
+
+async def test_a_lost_robot_calls_no_longer_than_its_run_goes_on(bench: Bench) -> None:
+    await bench.take(lost())
+    ended = ev.RunFailed(time=9.0, wall_time=NOW, run=RUN, reason="no robot is left")
+    over = ("withdrawn", "Its run is over.")
+    assert await bench.take(ended) == [("phone", *over), ("tablet", *over), ("watch", *over)]
+
+
+async def test_a_lost_robot_of_a_scripts_run_or_of_none_calls_nobody(bench: Bench) -> None:
+    assert await bench.take(lost(uuid4())) == []
+    bench.live = False
+    assert await bench.take(lost()) == []

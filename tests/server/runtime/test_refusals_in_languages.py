@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import AsyncIterator, Awaitable
+from importlib.metadata import entry_points
 from uuid import uuid4
 
 import pytest
@@ -105,6 +106,11 @@ def test_every_way_in_which_a_dialogue_closes(reason: CloseReason) -> None:
 @pytest.mark.parametrize("role", [Role.VIEWER, Role.OPERATOR])
 def test_who_may_not(role: Role) -> None:
     assert untold([forbidden(Role.HELPER, role).detail, NO_LONGER_SIGNED_IN]) == []
+
+
+def test_every_kind_of_issue_has_a_name() -> None:
+    kinds = entry_points(group="mend.dialogues").names
+    assert untold([each.replace("_", " ") for each in kinds]) == []
 
 
 def test_what_nobody_has_put_into_a_language_is_found() -> None:

@@ -34,3 +34,12 @@ async def test_nobody_else_may_answer_them() -> None:
             await dialogues.extend(dialogue, prompt, "ann")
         with pytest.raises(ConflictError, match="people are not asked"):
             await dialogues.claim(dialogue, "ann")
+
+
+@pytest.mark.parametrize(
+    ("answers", "live"), [(None, True), ("live", True), ("none", False), (["yes"], False)]
+)
+async def test_a_run_says_whether_people_answer(answers: object, live: bool) -> None:
+    async with pretend_service(TREE, {}) as service:
+        view, _ = await service.run_to_end(answers=answers)
+        assert view.live is live

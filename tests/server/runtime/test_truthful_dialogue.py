@@ -21,14 +21,21 @@ OPERATED = EscalationPolicy(operators=("ops@example.org",))
 
 
 async def run_with(
-    kind: str, step: int, answers: Any, *, times: int = 9, goal: str = "then", **robot: Any
+    kind: str,
+    step: int,
+    answers: Any,
+    *,
+    times: int = 9,
+    goal: str = "then",
+    person: Any = None,
+    **robot: Any,
 ) -> tuple[RunView, list[ev.Event]]:
     """A run in which `part_1` runs into an issue of a kind so often."""
     faults = {"part_1": [(kind, step)] * times}
     async with pretend_service(
         definition_of({goal: LEAVES}), faults, scene=SCENE, policy=OPERATED, **robot
     ) as service:
-        view, events = await service.run_to_end(answers=answers)
+        view, events = await service.run_to_end(answers=answers, person=person)
         alarms = [each for each in service.mails if isinstance(each, ev.SuspectedFalseAlarm)]
     assert [each.told for each in alarms] == [
         each.told for each in of_type(events, ev.SuspectedFalseAlarm)
@@ -124,12 +131,23 @@ async def test_who_answers_before_the_first_look_has_as_much_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(answering, "DEFAULT_DELAY_S", 0.0)
-    _, events = await run_with("missed", 4, ["yes"] * 50, wrong=True)
+    _, events = await run_with("missed", 4, ["yes"] * 50, wrong=True, person={"never": 1.0})
     looked, awaited = of_type(events, ev.FirstLook)[0], of_type(events, ev.HelpAwaited)[0]
     assert events.index(awaited) < events.index(looked)
     assert looked.fulfilled == ["in_reach"]
     assert of_type(events, ev.HelpVerified)[0].time - awaited.time >= 10.0
     assert not any(each.helped for each in of_type(events, ev.Resolved))
+
+
+async def test_who_promises_before_the_first_look_and_does_it_is_thanked(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", 0.0)
+    _, events = await run_with("dropped", 4, ["yes"], times=1, person={"delay_s": 0.0})
+    looked, awaited = of_type(events, ev.FirstLook)[0], of_type(events, ev.HelpAwaited)[0]
+    done = of_type(events, ev.InterventionDone)[0]
+    assert events.index(awaited) < events.index(looked) < events.index(done)
+    assert of_type(events, ev.Resolved)[0].helped
 
 
 async def test_operators_hear_of_a_robot_that_is_wrong_also_where_no_is_said_at_once(

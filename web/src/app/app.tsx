@@ -5,10 +5,12 @@ import { AskBar } from "../question/ask_bar";
 import { QuestionsView } from "../question/questions_view";
 import { followFleets } from "../requests/fleets";
 import { SignIn } from "../sign_in/sign_in";
+import { followRobots } from "../state/robots";
 import { session } from "../state/service";
 import { ConnectionBar } from "./connection_bar";
 import { Header } from "./header";
 import { besideRobot, helperName, pushOn } from "../state/preferences";
+import { MissedBar } from "../calling/missed_bar";
 import { SoundBar } from "../calling/sound_bar";
 import { later } from "./later";
 import { type Route, route } from "./router";
@@ -32,6 +34,7 @@ const SettingsView = later(() => import("../settings/settings_view").then((modul
 
 export function App() {
   useEffect(() => (session.value === "in" ? followFleets() : undefined), [session.value]);
+  useEffect(() => (session.value === "in" ? followRobots() : undefined), [session.value]);
   useEffect(() => (session.value === "in" && besideRobot.value ? standBeside() : undefined), [session.value, besideRobot.value]);
   useEffect(() => {
     if (session.value === "in" && pushOn.value) void import("../calling/push").then((push) => push.callThisDeviceStill());
@@ -55,6 +58,7 @@ export function App() {
       <div class="top">
         <Header />
         <ConnectionBar />
+        <MissedBar />
         <SoundBar />
       </div>
       <Announcer />

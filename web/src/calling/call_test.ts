@@ -9,7 +9,7 @@ import { trialArrives } from "./registration";
 import { play } from "./sounds";
 import { tryToKeepAwake } from "./wake_lock";
 import { decimal, t } from "../words/words";
-import { said } from "../words/said";
+import { said, whyNotDone } from "../words/said";
 
 type Found = Omit<Finding, "what">;
 type Check = readonly [what: string, find: () => Promise<Found>];
@@ -35,7 +35,7 @@ export const CHECKS: readonly Check[] = [
 export async function testCalling(tell: (finding: Finding) => void): Promise<Finding[]> {
   const findings: Finding[] = [];
   for (const [what, find] of CHECKS) {
-    const found = await find().catch((error: Error) => bad(error.message));
+    const found = await find().catch((error: Error) => bad(whyNotDone(error)));
     findings.push({ what, ...found });
     tell({ what, ...found });
   }

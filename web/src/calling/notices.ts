@@ -1,6 +1,6 @@
 // How a call looks as a notification: the same whether it was pushed or the page itself shows it.
 import { robotName } from "../question/fault_words";
-import type { CallMessage, WithdrawnMessage } from "../wire/types";
+import type { CallMessage, RobotLostMessage, WithdrawnMessage } from "../wire/types";
 import { t } from "../words/words";
 import { learn, said } from "../words/said";
 
@@ -36,6 +36,22 @@ export function callNotice(call: Omit<CallMessage, "type">, quiet: boolean): Not
       // Both at once are refused.
       ...(quiet ? {} : { vibrate: call.urgent ? [500, 150, 500, 150, 800] : [200, 120, 200] }),
       data: { dialogue: call.dialogue },
+    },
+  };
+}
+
+/** A robot is gone: nobody asks, and somebody has to see after it. */
+export function lostNotice({ dialogue, robot }: Omit<RobotLostMessage, "type" | "run">, quiet: boolean): Notice {
+  return {
+    title: t("{robot} is gone", { robot: robotName(robot) }),
+    options: {
+      ...LOOKS,
+      body: t("Its run waits for it. See whether it has power and a connection."),
+      tag: dialogue,
+      renotify: true,
+      requireInteraction: true,
+      silent: quiet,
+      ...(quiet ? {} : { vibrate: [200, 120, 200] }),
     },
   };
 }

@@ -1,6 +1,7 @@
 // What rings here, and how often: until somebody is on it, or whoever is called puts it off.
 import type { Question, Together } from "../state/questions";
 import { isTurnOf } from "../question/turn";
+import type { RobotView } from "../wire/types";
 
 /** One thing that this helper is called about. */
 export interface Ring {
@@ -10,6 +11,9 @@ export interface Ring {
   urgent: boolean;
 }
 
+/** A robot that is gone while a run waits for it: it calls everybody who helps. */
+type Lost = Pick<RobotView, "robot" | "run">;
+
 type Asked = Pick<Question, "prompt" | "claimed_by" | "interrupts">;
 
 /** What rings for this helper; `putOff` are prompts that they do not want to be called about here. */
@@ -18,6 +22,7 @@ export function ringing(
   together: readonly Pick<Together, "prompt" | "helper">[],
   me: string,
   putOff: ReadonlySet<string>,
+  lost: readonly Lost[] = [],
 ): Ring[] {
   const asked = open
     .filter((each) => isTurnOf(me, each) && each.claimed_by === null && !putOff.has(each.prompt?.prompt ?? ""))
@@ -25,7 +30,12 @@ export function ringing(
   const held = together
     .filter((each) => each.helper === me && !putOff.has(each.prompt))
     .map((each) => ({ key: each.prompt, urgent: true }));
-  return [...held, ...asked];
+  const gone = lost.map((each) => ({ key: ringOfLost(each), urgent: false })).filter(({ key }) => !putOff.has(key));
+  return [...held, ...asked, ...gone];
+}
+
+export function ringOfLost({ robot, run }: Lost): string {
+  return `lost ${robot} ${run}`;
 }
 
 export function ringOf({ prompt }: Pick<Question, "prompt">): string {

@@ -1,7 +1,7 @@
 // Runs without a page: shows what is pushed to this device, and takes it away when it is over.
 // It answers no request and keeps no file, so that the console is never older than the service.
 import type { PushMessage, WithdrawnMessage } from "../wire/types";
-import { callNotice, type Notice, OVER, overNotice, trialNotice } from "./notices";
+import { callNotice, lostNotice, type Notice, OVER, overNotice, trialNotice } from "./notices";
 import { addWords, type Words } from "../words/words";
 import { takeSentences } from "../words/said";
 
@@ -45,6 +45,7 @@ async function take(message: PushMessage): Promise<void> {
   const open = await pages();
   const watched = open.some((page) => page.focused && page.visibilityState === "visible");
   if (message.type === "call") await show(callNotice(message, watched));
+  else if (message.type === "robot_lost") await show(lostNotice(message, watched));
   else if (message.type === "withdrawn") await takeAway(message, watched);
   else {
     await show(trialNotice());

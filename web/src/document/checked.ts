@@ -2,6 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { connection } from "../state/service";
 import type { DocumentCheck } from "../wire/types";
+import { whyNotDone } from "../words/said";
 
 const PAUSE_MS = 300;
 
@@ -43,7 +44,7 @@ export function useChecked(text: string, ask: (text: string, signal: AbortSignal
             })),
           (error: Error) => {
             if (abort.signal.aborted) return;
-            setChecked((before) => ({ ...before, pending: false, failure: error.message }));
+            setChecked((before) => ({ ...before, pending: false, failure: whyNotDone(error) }));
           },
         );
       },

@@ -13,6 +13,7 @@ import { SaveForm } from "./save_form";
 import { type Jump, TextEditor } from "./text_editor";
 import { useUnsaved } from "./unsaved";
 import { type EditedText, useText } from "./use_text";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 import "./document_editor.css";
 
@@ -41,7 +42,7 @@ export function DocumentEditor({ kind, name, drawing }: DocumentEditorProps) {
   const [beginning, setBeginning] = useState<Beginning | null>(null);
   const [mistake, setMistake] = useState("");
   useEffect(() => {
-    begin(kind, name).then(setBeginning, (error: Error) => setMistake(error.message));
+    begin(kind, name).then(setBeginning, (error: Error) => setMistake(whyNotDone(error)));
   }, [name]);
   if (beginning !== null) return <Editor kind={kind} document={name} drawing={drawing} {...beginning} />;
   return <p class={mistake === "" ? "page quiet" : "page mistake"}>{mistake || t("Loading …")}</p>;

@@ -4,6 +4,7 @@ import { may, whyNot } from "../state/access";
 import { Confirm } from "../app/confirm";
 import * as rest from "../wire/rest";
 import type { DocumentSummary } from "../wire/types";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 
 interface SaveFormProps {
@@ -34,7 +35,7 @@ export function SaveForm(props: SaveFormProps) {
       setMistake(
         error instanceof rest.Refusal && error.errors.length > 1
           ? t("It was not saved: put the mistakes right first.")
-          : t("It was not saved: {message}", { message: (error as Error).message }),
+          : t("It was not saved: {message}", { message: whyNotDone(error) }),
       );
       setSaving(false);
     }

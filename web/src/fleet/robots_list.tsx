@@ -11,6 +11,7 @@ import type { ErrandEnded, FleetRobot, FleetView } from "../wire/types";
 import type { FleetEvent } from "./fleet_past";
 import { isAtInWords, placeInWords, sureInWords, wholeClock } from "./fleet_words";
 import { useRefusal } from "./use_refusal";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 
 interface RobotsListProps {
@@ -125,7 +126,7 @@ function Deeds({ fleet, robot, changed }: DeedsProps) {
   const run = (deed: Promise<void>) => {
     setAsked(null);
     setFailure("");
-    void deed.catch((error: Error) => setFailure(sentence(error.message))).then(changed);
+    void deed.catch((error: Error) => setFailure(sentence(whyNotDone(error)))).then(changed);
   };
   const send = (place: string) => run(rest.sendRobot(fleet.site, robot.robot, place));
   return (

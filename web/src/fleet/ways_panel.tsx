@@ -8,6 +8,7 @@ import * as rest from "../wire/rest";
 import type { ClosedWayView, FleetView, WayReport } from "../wire/types";
 import { closedInWords, placeInWords } from "./fleet_words";
 import { closedWay, type Picked, sameWay } from "./picked";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 
 /** For how long something is said to be so, minutes; 0 until it is forgotten by itself. */
@@ -32,7 +33,7 @@ export function WaysPanel(props: WaysPanelProps) {
   const [failure, setFailure] = useState("");
   const run = (deed: Promise<void>) => {
     setFailure("");
-    void deed.then(changed, (error: Error) => setFailure(sentence(error.message)));
+    void deed.then(changed, (error: Error) => setFailure(sentence(whyNotDone(error))));
   };
   const tell = (way: WayReport) => run(rest.tellOfWay(fleet.site, way));
   return (

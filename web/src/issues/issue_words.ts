@@ -10,7 +10,7 @@ export const OUTCOME_WORDS: Readonly<Record<Outcome, string>> = {
   withdrawn: t("Withdrawn by the robot"),
   gave_up: t("Given up"),
   left_out: t("Left out"),
-  aborted: t("The run ended"),
+  aborted: t("Lapsed"),
 };
 
 /** How an issue ended: the word of its dialogue, or that there is none yet. */

@@ -3,6 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import { onEvent, onSnapshot } from "../state/service";
 import * as rest from "../wire/rest";
 import type { Event, IssueSummary } from "../wire/types";
+import { whyNotDone } from "../words/said";
 
 export const PAGE_SIZE = 30;
 
@@ -30,7 +31,7 @@ export function useIssuesPage(query: string, before: number | null): IssuesPage 
             setFound({ issues: issues.slice(0, PAGE_SIZE), more: issues.length > PAGE_SIZE, failure: "" });
         },
         (error: Error) => {
-          if (mine === newest) setFound((known) => ({ ...known, failure: error.message }));
+          if (mine === newest) setFound((known) => ({ ...known, failure: whyNotDone(error) }));
         },
       );
     };

@@ -1,5 +1,6 @@
 // What robots noticed, newest first: found by its part, robot or task tree, and opened at its moment.
 import { useState } from "preact/hooks";
+import { KNOWN_ISSUES } from "../question/fault_words";
 import { isAnything, queryOf } from "../run/search";
 import { SearchFields } from "../run/search_fields";
 import { ago, clock, moment } from "../run/run_words";
@@ -10,11 +11,12 @@ import type { IssueSummary } from "../wire/types";
 import { momentOf, outcomeOf } from "./issue_words";
 import { useIssuesPage } from "./issues_page";
 import { pages, search, searchIssues } from "./issues_search";
+import { issueKind, issueMeant } from "../words/issue_kinds";
 import { t } from "../words/words";
 import "./issues.css";
 
 export function IssuesView() {
-  const query = useSettled(queryOf(search.value).toString());
+  const query = useSettled(queryOf({ ...search.value, text: issueMeant(search.value.text, KNOWN_ISSUES) }).toString());
   const { issues, more, failure } = useIssuesPage(query, pages.value.at(-1) ?? null);
   const now = useNow();
   const none = issues !== null && issues.length === 0;
@@ -57,7 +59,7 @@ function Row({ issue, now }: { issue: IssueSummary; now: number }) {
       <a class="issue" href={momentOf(issue)}>
         <Picture picture={issue.picture} />
         <span class="issue-what">
-          <strong>{plain(issue.issue)}</strong>
+          <strong>{issueKind(issue.issue)}</strong>
           <span>{plain(issue.object ?? issue.name)}</span>
         </span>
         <span class="issue-where">

@@ -35,7 +35,7 @@ export function ModelsView() {
       setGiven(modelFileOf(file));
       setMistake("");
     } catch (error) {
-      setMistake((error as Error).message);
+      setMistake(whyNotDone(error));
     }
   };
   return (

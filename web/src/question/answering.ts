@@ -69,7 +69,8 @@ function give(question: Question, reply: Reply, words: string, option: { effect:
   else sendHeld();
   note(prompt.prompt, null);
   const waiting = { question, prompt: prompt.prompt, reply, said: words, effect: option.effect };
-  if (!option.final) {
+  // Where the robot does not wait, help that comes three seconds later may come too late.
+  if (!option.final || !question.interrupts) {
     void send(waiting);
     return;
   }

@@ -15,7 +15,9 @@ const WARN_S = 25;
 export function Countdown({ question }: { question: Question }) {
   const left = useSecondsLeft(question);
   const { prompt } = question;
-  if (left === null || prompt === null) return null;
+  if (prompt === null) return null;
+  if (!question.interrupts) return <p class="countdown">{t("It does not wait")}</p>;
+  if (left === null) return null;
   const late = left <= WARN_S;
   return (
     <div class={`countdown ${late ? "late" : ""}`}>
@@ -31,7 +33,7 @@ export function Countdown({ question }: { question: Question }) {
 export function MoreTime({ question }: { question: Question }) {
   const [mistake, setMistake] = useState("");
   const { prompt } = question;
-  if (prompt === null || prompt.deadline === null || prompt.extensions_left === 0 || !may("helper")) return null;
+  if (prompt === null || prompt.deadline === null || prompt.extensions_left === 0 || !question.interrupts || !may("helper")) return null;
   const more = () => {
     setMistake("");
     command({ type: "extend", dialogue: question.dialogue, prompt: prompt.prompt }).catch((error: Error) =>

@@ -33,6 +33,9 @@ const SENTENCES_OF_BASES: Readonly<Record<string, () => string>> = {
   wrong_floor: () => t("The robot is in an elevator that has opened at a wrong floor."),
 };
 
+/** The kinds of issue that the console has words of its own for. */
+export const KNOWN_ISSUES: readonly string[] = [...Object.keys(SENTENCES), ...Object.keys(SENTENCES_OF_BASES)];
+
 /** One sentence about the fault; a kind that the console does not know gets a general one. */
 export function faultInWords(about: About): string {
   const ofBases = about.detection?.camera === "laser" ? SENTENCES_OF_BASES[about.issue] : undefined;

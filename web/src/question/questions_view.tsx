@@ -1,4 +1,4 @@
-// What the robots ask: one question large, the others in a queue, and what help is awaited.
+// What the robots ask: one question large, the others in a queue, and what help is awaited; below it all that goes on.
 import { useEffect } from "preact/hooks";
 import { awaitingHelp, together } from "../state/questions";
 import { runs } from "../state/service";
@@ -27,6 +27,8 @@ const RunWaits = later(() => import("../run/steering/run_waits").then((module) =
 // Whom robots ask besides is no part of answering.
 const WhoHelps = later(() => import("./who_helps").then((module) => module.WhoHelps), loadOtherWords, true);
 
+const Overview = later(() => import("../home/overview").then((module) => module.Overview), loadOtherWords, true);
+
 export function QuestionsView() {
   useEffect(() => stopChoosing, []);
   const question = shown.value;
@@ -43,6 +45,7 @@ export function QuestionsView() {
         {question === null && waiting && <Waiting />}
         {question === null && !waiting && <AtAGlance />}
         <WhoHelps />
+        <Overview asked={question !== null || waiting} />
       </div>
       {beside && (
         <aside class="questions-side" aria-label={t("Also going on")}>

@@ -84,6 +84,7 @@ function Left({ dialogue }: { dialogue: string | undefined }) {
 
 function Clock({ question }: { question: Question }) {
   const left = useSecondsLeft(question);
+  if (!question.interrupts) return <span class="queue-left">{t("It does not wait")}</span>;
   if (left === null) return null;
   return (
     <span class="queue-left">

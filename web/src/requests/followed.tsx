@@ -8,6 +8,7 @@ import { said } from "./places";
 import { isOpenEnded, isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "./request_words";
 import { Waits } from "./waits";
 import { type SiteClock, when } from "./when";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 import { Told } from "../words/told";
 
@@ -24,7 +25,7 @@ export function Followed({ request, clock, changed, at }: FollowedProps) {
   const heading = useRef<HTMLHeadingElement>(null);
   useEffect(() => heading.current?.focus(), [request.name]);
   const cancel = () =>
-    rest.cancelRequest(request.site, request.name).then(changed, (error: Error) => setFailure(error.message));
+    rest.cancelRequest(request.site, request.name).then(changed, (error: Error) => setFailure(whyNotDone(error)));
   const { status, reason } = request;
   return (
     <section class="panel followed" aria-label={t("Your request")}>

@@ -13,6 +13,7 @@ import { useKinds } from "./use_kinds";
 import { Waits } from "./waits";
 import { useRequests } from "./use_requests";
 import { WishForm } from "./wish_form";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 import { Told } from "../words/told";
 import "./requests.css";
@@ -116,7 +117,7 @@ export function RequestList({ label, requests, now, changed }: ListProps) {
 function Row({ request, now, changed }: { request: RequestView; now: number | undefined; changed: (() => void) | undefined }) {
   const [failure, setFailure] = useState("");
   const cancel = () =>
-    rest.cancelRequest(request.site, request.name).then(changed, (error: Error) => setFailure(error.message));
+    rest.cancelRequest(request.site, request.name).then(changed, (error: Error) => setFailure(whyNotDone(error)));
   const { status, reason } = request;
   return (
     <li class="request">

@@ -2,6 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import * as rest from "../wire/rest";
 import type { FleetView, RequestView } from "../wire/types";
+import { whyNotDone } from "../words/said";
 
 const AGAIN_MS = 2_000;
 
@@ -24,7 +25,7 @@ export function useRequests(site: string, againMs = AGAIN_MS): Requests & { agai
     const read = async () => {
       await Promise.all([rest.requests(site), rest.fleet(site)]).then(
         ([requests, fleet]) => current && setFound({ requests, fleet, failure: "" }),
-        (error: Error) => current && setFound((before) => ({ ...before, failure: error.message })),
+        (error: Error) => current && setFound((before) => ({ ...before, failure: whyNotDone(error) })),
       );
       if (current) timer = window.setTimeout(() => void read(), againMs);
     };

@@ -30,6 +30,15 @@ export function keptPictures(events: readonly Event[]): KeptPicture[] {
   });
 }
 
+const USUAL = ["head", "forearm"];
+
+/** The cameras to be shown: those that a robot has, or that pictures are kept of, and else what arms have; the usual ones first. */
+export function camerasOf(has: readonly string[], kept: readonly KeptPicture[]): string[] {
+  const known = new Set([...has, ...kept.map(({ camera }) => camera)]);
+  const usual = USUAL.filter((each) => known.size === 0 || known.has(each));
+  return [...usual, ...[...known].filter((each) => !USUAL.includes(each)).sort()];
+}
+
 /** What a camera saw nearest to a time; null if nothing is kept from about then. */
 export function pictureNear(kept: readonly KeptPicture[], camera: string, time: number): KeptPicture | null {
   let nearest: KeptPicture | null = null;

@@ -2,6 +2,7 @@
 import { plain } from "../tree/words";
 import { picturePath } from "../wire/rest";
 import { awaiting, type OpenDialogue } from "./fold";
+import { issueKind } from "../words/issue_kinds";
 import { t } from "../words/words";
 import "./dialogue_now.css";
 import { learn } from "../words/said";
@@ -18,7 +19,7 @@ export function DialogueNow({ dialogue }: { dialogue: OpenDialogue }) {
       {raised?.picture != null && <img src={picturePath(raised.picture)} alt={t("What the robot saw at the fault")} />}
       <div>
         <p class="small quiet">
-          {opened.robot} · {plain(opened.issue)} · {plain(opened.object ?? opened.name)}
+          {opened.robot} · {issueKind(opened.issue)} · {plain(opened.object ?? opened.name)}
         </p>
         {prompt !== null && <p class="dialogue-text"><Quoted text={prompt.text} /></p>}
         <p class="small">

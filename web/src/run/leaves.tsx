@@ -8,6 +8,7 @@ import * as rest from "../wire/rest";
 import type { NodeTaken, NodeView } from "../wire/types";
 import { beingDone, canBeTaken, whatWasSaid } from "./leaf_words";
 import { sentence } from "./run_words";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 import "./leaves.css";
 
@@ -30,7 +31,7 @@ export function Leaves({ run, people, selected, example, going }: LeavesProps) {
     setBusy(true);
     const found = await request.then(
       (text) => ({ text, refused: false }),
-      (error: Error) => ({ text: sentence(error.message), refused: true }),
+      (error: Error) => ({ text: sentence(whyNotDone(error)), refused: true }),
     );
     setNote(found);
     setBusy(false);

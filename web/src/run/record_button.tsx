@@ -3,6 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import { may } from "../state/access";
 import { helperName } from "../state/preferences";
 import * as rest from "../wire/rest";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 
 const CHOICES_S = [10, 30, 60] as const;
@@ -26,7 +27,7 @@ export function RecordButton({ run }: { run: string }) {
       await rest.recordCameras(run, { seconds, helper: helperName.value });
       setRecording(true);
     } catch (error) {
-      setNote((error as Error).message);
+      setNote(whyNotDone(error));
     }
   };
   return (

@@ -6,6 +6,7 @@ import { plain } from "../tree/words";
 import * as rest from "../wire/rest";
 import type { RunRequest } from "../wire/types";
 import type { RunState } from "./fold";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 
 export function RunAgain({ started }: { started: RunState["started"] }) {
@@ -18,7 +19,7 @@ export function RunAgain({ started }: { started: RunState["started"] }) {
       const again = { ...(started.options as unknown as RunRequest), seed: Number.parseFloat(seed) };
       go(`/runs/${(await rest.startRun(again)).id}`);
     } catch (error) {
-      setMistake((error as Error).message);
+      setMistake(whyNotDone(error));
     }
   };
   return (

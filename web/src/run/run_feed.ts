@@ -6,6 +6,7 @@ import type { Told } from "../wire/told";
 import { ended } from "./fold";
 import { createHistory, type History } from "./history";
 import { createMoment, type Moment } from "./moment";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 
 export interface RunFeed {
@@ -83,5 +84,5 @@ export function openRun(run: string): RunFeed {
 function whyNot(run: string, error: Error): string {
   // An id that is none, and one that no run has, are the same to whoever typed it.
   const none = error instanceof rest.Refusal && (error.status === 404 || error.status === 422);
-  return none ? t("There is no run “{run}”.", { run }) : error.message;
+  return none ? t("There is no run “{run}”.", { run }) : whyNotDone(error);
 }

@@ -9,6 +9,7 @@ import { ended, type RunState } from "./fold";
 import type { Moment } from "./moment";
 import { RunAgain } from "./run_again";
 import { clock, sentence, siteName } from "./run_words";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 import "./run_header.css";
 
@@ -78,7 +79,7 @@ function RunControls({ run, paused }: { run: string; paused: boolean }) {
     try {
       await request(run);
     } catch (error) {
-      setNote((error as Error).message);
+      setNote(whyNotDone(error));
     }
     setBusy(false);
   };

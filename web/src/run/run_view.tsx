@@ -23,6 +23,9 @@ import { doersOf } from "./leaf_words";
 import { useMomentInAddress } from "./moment_in_address";
 import { openRun, type RunFeed } from "./run_feed";
 import { RunHeader } from "./run_header";
+import { runLayout } from "./kept_layout";
+import { styleOf } from "./run_layout";
+import { Splitters } from "./splitters";
 import { steeredOf } from "./steering/steered";
 import { waitsOf } from "./steering/waits";
 import { Scrubber } from "./scrubber";
@@ -206,8 +209,8 @@ function Shown({ feed, version, state, latest }: ShownProps) {
     [plan, state.started.run, moment, plan === null ? state.people : state],
   );
   const cameras = useMemo(
-    () => state.started.world !== BLIND_WORLD && <Cameras run={state.started.run} moment={moment} status={latest.status} />,
-    [state.started.run, moment, latest.status],
+    () => state.started.world !== BLIND_WORLD && <Cameras run={state.started.run} robots={state.started.robots} moment={moment} status={latest.status} />,
+    [state.started, moment, latest.status],
   );
   const transcript = (
     <section class="panel run-transcript">
@@ -216,7 +219,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
     </section>
   );
   return (
-    <div class={`run-view ${newest ? "" : "in-past"} ${plan === null ? "" : "in-building"}`}>
+    <div class={`run-view ${newest ? "" : "in-past"} ${plan === null ? "" : "in-building"}`} style={styleOf(runLayout.value)}>
       <RunHeader newest={latest} moment={moment} />
       {narrow ? (
         <>
@@ -234,6 +237,7 @@ function Shown({ feed, version, state, latest }: ShownProps) {
         <>
           <div class="run-area world">{world}</div>
           <div class="run-area tree">{tree}</div>
+          <Splitters />
           <div class="run-area timeline">{timeline}</div>
           <div class="run-area side">
             {talk}

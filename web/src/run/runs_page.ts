@@ -3,6 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import { onEvent, onSnapshot } from "../state/service";
 import * as rest from "../wire/rest";
 import type { Event, RunStatus, RunSummary } from "../wire/types";
+import { whyNotDone } from "../words/said";
 
 export const PAGE_SIZE = 20;
 
@@ -36,7 +37,7 @@ export function useRunsPage(statuses: readonly RunStatus[], page: number, query:
           if (current) setFound(shown);
         },
         (error: Error) => {
-          if (current) setFound((before) => ({ ...before, failure: error.message }));
+          if (current) setFound((before) => ({ ...before, failure: whyNotDone(error) }));
         },
       );
     };

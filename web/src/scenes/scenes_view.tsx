@@ -4,6 +4,7 @@ import { may } from "../state/access";
 import { connection } from "../state/service";
 import * as rest from "../wire/rest";
 import type { SceneSummary } from "../wire/types";
+import { whyNotDone } from "../words/said";
 import { t, tn } from "../words/words";
 import "./scenes.css";
 
@@ -12,7 +13,7 @@ export function ScenesView() {
   const [mistake, setMistake] = useState("");
   const connected = connection.value === "connected";
   useEffect(() => {
-    rest.scenes().then(setScenes, (error: Error) => setMistake(error.message));
+    rest.scenes().then(setScenes, (error: Error) => setMistake(whyNotDone(error)));
   }, [connected]);
   return (
     <section class="page">

@@ -5,6 +5,7 @@ import { callThisDevice, callThisDeviceNoMore, whyNoPush } from "../calling/push
 import { may } from "../state/access";
 import { CallTest } from "./call_test";
 import { Notifications } from "./notifications";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 
 export function Calling() {
@@ -54,7 +55,7 @@ function CallDevice() {
     try {
       await (want ? callThisDevice() : callThisDeviceNoMore());
     } catch (error) {
-      setMistake((error as Error).message);
+      setMistake(whyNotDone(error));
     }
     setWanted(null);
   };

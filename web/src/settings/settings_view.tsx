@@ -7,6 +7,7 @@ import { AnswerKeys } from "./answer_keys";
 import { LanguageChoice } from "./language_choice";
 import { Calling } from "./calling";
 import { VoiceChoice } from "./voice_choice";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 import "./settings.css";
 
@@ -72,7 +73,7 @@ function SignOut() {
   const [mistake, setMistake] = useState<string | null>(null);
   const leave = () => {
     setMistake(null);
-    signOut().catch((error: Error) => setMistake(error.message));
+    signOut().catch((error: Error) => setMistake(whyNotDone(error)));
   };
   return (
     <>

@@ -4,6 +4,7 @@ import { useState } from "preact/hooks";
 import { helperName } from "../state/preferences";
 import { call, session, sessionEnded, signIn } from "../state/service";
 import { Refusal } from "../wire/rest";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 import "./sign_in.css";
 
@@ -32,7 +33,7 @@ function TokenForm() {
     try {
       await signIn(String(new FormData(form).get("token")).trim());
     } catch (error) {
-      setMistake(error instanceof Refusal && error.status === 401 ? t("This is not the token.") : (error as Error).message);
+      setMistake(error instanceof Refusal && error.status === 401 ? t("This is not the token.") : whyNotDone(error));
       form.querySelector("input")?.select();
     } finally {
       setBusy(false);

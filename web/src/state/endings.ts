@@ -46,11 +46,11 @@ export async function tellHowItEnded(gone: DialogueView): Promise<void> {
   const by = found?.answered_by ?? null;
   if (found?.reason === "resolved" && by !== null)
     tellEnding(gone, t("It was closed meanwhile; {by} had answered.", { by }));
-  else tellEnding(gone, closing((found?.reason ?? "aborted") as CloseReason, null));
+  else tellEnding(gone, closing((found?.reason ?? "aborted") as CloseReason, null, gone.interrupts));
 }
 
-/** Why a dialogue closed, in words; `statement` is what the robot said last. */
-export function closing(reason: CloseReason, statement: string | null): string {
+/** Why a dialogue closed, in words; `statement` is what the robot said last, `waited` whether it waited for an answer. */
+export function closing(reason: CloseReason, statement: string | null, waited: boolean): string {
   const last = statement === null ? "" : ` ${t("“{text}”", { text: said(statement) })}`;
   switch (reason) {
     case "resolved":
@@ -62,6 +62,8 @@ export function closing(reason: CloseReason, statement: string | null): string {
     case "left_out":
       return t("Settled.{last}", { last });
     case "aborted":
-      return t("No longer needed: the robot has stopped this task.");
+      return waited
+        ? t("No longer needed: the robot has stopped this task.")
+        : t("No longer needed: the robot did not wait for an answer.");
   }
 }

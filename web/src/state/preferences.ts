@@ -15,7 +15,7 @@ export interface Keys {
 
 export const DEFAULT_KEYS: Keys = { yes: "y", no: "n", repeat: "r" };
 
-function kept<T>(name: string, value: T): Signal<T> {
+export function kept<T>(name: string, value: T): Signal<T> {
   const found = localStorage.getItem(`mend.${name}`);
   const held = signal(found === null ? value : (JSON.parse(found) as T));
   effect(() => localStorage.setItem(`mend.${name}`, JSON.stringify(held.value)));

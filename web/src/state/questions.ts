@@ -226,7 +226,7 @@ function close(question: Question, reason: Extract<Event, { type: "dialogue_clos
     const { prompt, text } = statement;
     together.value = [...together.value, { ...question, prompt, text, helper: question.answered_by }];
   } else if (!question.scripted) {
-    tellEnding(question, closing(reason, statement?.text ?? null));
+    tellEnding(question, closing(reason, statement?.text ?? null, question.interrupts));
   }
   resolutions.delete(question.dialogue);
   const next = new Map(open.value);

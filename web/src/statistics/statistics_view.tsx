@@ -9,6 +9,7 @@ import type { GroupedStatistics, Statistics } from "../wire/types";
 import { answersOf, faultsOf, type Figure, outcomesOf, rateOf, runsOf } from "./statistics_words";
 import { useStatistics } from "./use_statistics";
 import "../run/search_fields.css";
+import { issueKind } from "../words/issue_kinds";
 import { t } from "../words/words";
 import { locale } from "../words/language";
 import "./statistics.css";
@@ -192,7 +193,7 @@ function Groups({ title, kind, name, grouped, allPicks = false }: GroupsProps) {
             </thead>
             <tbody>
               {grouped.groups.map((group) => (
-                <Row key={group.name} group={group} />
+                <Row key={group.name} group={group} called={kind === "fault" ? issueKind(group.name) : plain(group.name)} />
               ))}
             </tbody>
           </table>
@@ -207,14 +208,14 @@ function Groups({ title, kind, name, grouped, allPicks = false }: GroupsProps) {
   );
 }
 
-function Row({ group }: { group: GroupedStatistics["groups"][number] }) {
+function Row({ group, called }: { group: GroupedStatistics["groups"][number]; called: string }) {
   const answers = answersOf(group.answers);
   const { from, to } = chosen.value.days;
   return (
     <tr>
       <th scope="row">
         <a href="/issues" onClick={() => searchIssues({ text: plain(group.name), from, to })}>
-          {plain(group.name)}
+          {called}
         </a>
       </th>
       <td>{group.faults.toLocaleString(locale)}</td>

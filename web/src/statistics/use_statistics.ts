@@ -3,6 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import { onEvent, onSnapshot } from "../state/service";
 import * as rest from "../wire/rest";
 import type { Event, Statistics } from "../wire/types";
+import { whyNotDone } from "../words/said";
 
 const CHANGES: ReadonlySet<Event["type"]> = new Set(["run_started", "run_finished", "run_failed", "run_aborted"]);
 
@@ -17,7 +18,7 @@ export function useStatistics(query: string): { found: Statistics | null; failur
           if (mine === newest) setState({ found, failure: "" });
         },
         (error: Error) => {
-          if (mine === newest) setState((known) => ({ ...known, failure: error.message }));
+          if (mine === newest) setState((known) => ({ ...known, failure: whyNotDone(error) }));
         },
       );
     };

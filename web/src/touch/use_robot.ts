@@ -3,6 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import { fleets } from "../requests/fleets";
 import * as rest from "../wire/rest";
 import type { AskedRobotView, SiteView } from "../wire/types";
+import { whyNotDone } from "../words/said";
 
 const AGAIN_MS = 5_000;
 
@@ -28,7 +29,7 @@ export function useRobot(name: string): UseRobot {
           setRobot(found);
           setFailure("");
         },
-        (error: Error) => current && setFailure(error.message),
+        (error: Error) => current && setFailure(whyNotDone(error)),
       );
     void read();
     const timer = setInterval(() => void read(), AGAIN_MS);

@@ -8,6 +8,7 @@ import * as rest from "../wire/rest";
 import type { DocumentView } from "../wire/types";
 import { DefinitionDrawing } from "./definition_drawing";
 import { dropDraft } from "../document/draft";
+import { whyNotDone } from "../words/said";
 import { t, tn } from "../words/words";
 
 export function TreeDetails({ tree }: { tree: string }) {
@@ -15,7 +16,7 @@ export function TreeDetails({ tree }: { tree: string }) {
   const [mistake, setMistake] = useState("");
   const connected = connection.value === "connected";
   useEffect(() => {
-    rest.tree(tree).then(setFound, (error: Error) => setMistake(error.message));
+    rest.tree(tree).then(setFound, (error: Error) => setMistake(whyNotDone(error)));
   }, [tree, connected]);
   if (found === null) return <p class={mistake === "" ? "quiet" : "mistake"}>{mistake || t("Loading …")}</p>;
   const { name, description, scene, nodes } = described(found);
@@ -59,7 +60,7 @@ function TreeActions({ tree }: { tree: DocumentView }) {
       dropDraft(tree.name);
       go("/trees");
     } catch (error) {
-      setMistake((error as Error).message);
+      setMistake(whyNotDone(error));
     }
   };
   if (!may("operator")) return null;

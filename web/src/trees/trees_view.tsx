@@ -7,6 +7,7 @@ import type { DocumentSummary } from "../wire/types";
 import { DropZone, FileButton } from "../document/drop_zone";
 import { TreeDetails } from "./tree_details";
 import { takeFile } from "./upload";
+import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 import "./trees.css";
 
@@ -15,11 +16,11 @@ export function TreesView({ tree }: { tree: string | null }) {
   const [mistake, setMistake] = useState("");
   const connected = connection.value === "connected";
   useEffect(() => {
-    rest.trees().then(setTrees, (error: Error) => setMistake(error.message));
+    rest.trees().then(setTrees, (error: Error) => setMistake(whyNotDone(error)));
   }, [tree, connected]);
   const take = (file: File) => {
     setMistake("");
-    takeFile(file, trees ?? []).catch((error: Error) => setMistake(error.message));
+    takeFile(file, trees ?? []).catch((error: Error) => setMistake(whyNotDone(error)));
   };
   const chosen = tree ?? trees?.[0]?.name ?? null;
   return (

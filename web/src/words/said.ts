@@ -94,12 +94,13 @@ function phrase(text: string): string | null {
   return null;
 }
 
-/** `rest` is a clause in turn, and a part may be called by words of the service's own; of what else fills a field only numbers are written otherwise. */
+/** `rest` is a clause in turn, and a part and a kind of issue may be called by words of the service's own; of what else fills a field only numbers are written otherwise. */
 function mapped(groups: Readonly<Record<string, string>>): Record<string, string> {
   return Object.fromEntries(
     Object.entries(groups).map(([name, value]) => {
       if (name === "rest") return [name, phrase(value) ?? value];
       if (name === "part") return [name, texts.get(value) ?? value];
+      if (name === "issue") return [name, texts.get(value.replaceAll("_", " ")) ?? value];
       const decimals = /^-?\d+\.(\d+)$/.exec(value)?.[1];
       return [name, decimals === undefined ? value : decimal(Number(value), decimals.length)];
     }),

@@ -2,14 +2,17 @@
 
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import pytest
 from drawn_scene import DrawnScene
+from languages_of_console import untold
 from monitor_view import BLOB, SEEN, VIEW
 from pydantic import ValidationError
 
 from mend.robots.arm.behaviors.contact import Contact
 from mend.robots.arm.grip import GripReading, GripState
+from mend.robots.arm.grip.composition import Composition
 from mend.robots.arm.monitors.blocked import Blocked
 from mend.robots.arm.monitors.dropped import Dropped
 from mend.robots.arm.monitors.missed import Missed
@@ -65,6 +68,27 @@ def test_each_is_registered_and_watches_its_phases(kind, phases, reaction) -> No
     assert watched == phases.split()
     assert monitor.reaction is reaction
     assert monitor.interrupts is (kind is not Positioning)
+
+
+@pytest.mark.parametrize("kind", [Missed, Dropped])
+@pytest.mark.parametrize("by_knob", [False, True])
+@pytest.mark.parametrize(
+    "sign",
+    [
+        {"opening_m": 0.003},
+        {"opening_m": 0.06},
+        {"opening_m": 0.03, "presses": True},
+        {"opening_m": 0.03, "presses": True, "composition": Composition(400, 0.1, 0.6, "blue_leg")},
+    ],
+)
+def test_why_it_is_not_held_is_in_the_languages_of_the_console(
+    kind: type[Missed | Dropped], by_knob: bool, sign: dict[str, Any]
+) -> None:
+    monitor = kind.create({})
+    reading = replace(grip(kind.state), by_knob=by_knob, **sign)
+    detection = monitor.check(replace(VIEW, grip=reading))
+    assert detection is not None
+    assert untold([detection.explanation]) == []
 
 
 @pytest.mark.parametrize("kind", [Missed, Dropped, Positioning, Blocked])

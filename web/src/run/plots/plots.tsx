@@ -8,6 +8,7 @@ import { PlotDrawing } from "./plot_drawing";
 import { PlotTable } from "./plot_table";
 import { openPoseNumbers, type PoseNumbers, seriesOf } from "./pose_numbers";
 import type { Series } from "./series";
+import { whyNotDone } from "../../words/said";
 import { t } from "../../words/words";
 import "./plots.css";
 
@@ -128,7 +129,7 @@ function usePoses(run: string, moment: Moment, wanted: boolean): Poses {
     let wantedStill = true;
     openPoseNumbers(run).then(
       (opened) => wantedStill && setNumbers(opened),
-      (error: Error) => wantedStill && setFailure(error.message),
+      (error: Error) => wantedStill && setFailure(whyNotDone(error)),
     );
     return () => {
       wantedStill = false;
@@ -143,7 +144,7 @@ function usePoses(run: string, moment: Moment, wanted: boolean): Poses {
         setFailure("");
         if (more) setRead((times) => times + 1);
       },
-      (error: Error) => wantedStill && setFailure(error.message),
+      (error: Error) => wantedStill && setFailure(whyNotDone(error)),
     );
     return () => {
       wantedStill = false;

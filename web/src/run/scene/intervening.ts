@@ -7,6 +7,7 @@ import { type Offer, sentenceOn, type Target } from "./interventions";
 import { armTarget } from "./object_list";
 import type { PoseSource } from "./pose_source";
 import type { Pointed } from "./scene_view";
+import { said, whyNotDone } from "../../words/said";
 import { t } from "../../words/words";
 
 interface OpenMenu {
@@ -28,14 +29,14 @@ export function useIntervening(run: string, offered: boolean, source: PoseSource
       onEvent((event) => {
         if (event.type !== "intervention" || event.run !== run) return;
         setNote(
-          event.ok ? sentenceOn(event.intervention) : t("That could not be done: {detail}.", { detail: event.detail }),
+          event.ok ? sentenceOn(event.intervention) : t("That could not be done: {detail}.", { detail: said(event.detail) }),
         );
       }),
     [run],
   );
   const act = (intervention: Intervention) => {
     setChosen(null);
-    rest.intervene(run, intervention).catch((error: Error) => setNote(error.message));
+    rest.intervene(run, intervention).catch((error: Error) => setNote(whyNotDone(error)));
   };
   const take = (offer: Offer, target: Target) => {
     setMenu(null);

@@ -1,4 +1,5 @@
-// Which field of a run's start a refusal of the service is about.
+// Which field of a run's start a refusal of the service is about, in the reader's language.
+import { said } from "../../words/said";
 
 export type StartField =
   | "tree"
@@ -50,10 +51,10 @@ export function atTheirFields(sentences: readonly string[]): StartMistakes {
 function placed(sentence: string): [StartField | "form", string] {
   const named = /^body\.(\w+)[^:]*: (.*)$/.exec(sentence);
   if (named?.[1] !== undefined && FIELDS.has(named[1])) {
-    return [named[1] as StartField, finished(named[2] ?? "")];
+    return [named[1] as StartField, finished(said(named[2] ?? ""))];
   }
   const field = ABOUT.find(([pattern]) => pattern.test(sentence))?.[1];
-  return [field ?? "form", finished(sentence)];
+  return [field ?? "form", finished(said(sentence))];
 }
 
 function finished(text: string): string {

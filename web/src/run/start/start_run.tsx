@@ -10,6 +10,7 @@ import { AnswerChoice, WorldChoice } from "./choices";
 import { Field, Mistake, told } from "./field";
 import { type Choices, type Filled, firstFilled, isLive, readChoices, request, settled, withChosen } from "./filled";
 import { atTheirFields, type StartMistakes } from "./start_mistakes";
+import { whyNotDone } from "../../words/said";
 import { t } from "../../words/words";
 import "./start_run.css";
 
@@ -27,7 +28,7 @@ export function StartRun({ tree }: { tree: string | null }) {
   const [mistake, setMistake] = useState("");
   const connected = connection.value === "connected";
   useEffect(() => {
-    readChoices().then(setChoices, (error: Error) => setMistake(error.message));
+    readChoices().then(setChoices, (error: Error) => setMistake(whyNotDone(error)));
   }, [connected]);
   return (
     <section class="page start-page">

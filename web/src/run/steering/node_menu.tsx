@@ -4,6 +4,8 @@ import { plain } from "../../tree/words";
 import type { NodeSteeringView, SteerNodeRequest } from "../../wire/types";
 import { sentence } from "../run_words";
 import { ACT_WORDS } from "./steering_words";
+import { said } from "../../words/said";
+import { Told } from "../../words/told";
 import { t } from "../../words/words";
 
 interface NodeMenuProps {
@@ -29,7 +31,7 @@ export function NodeMenu({ offers, busy, say }: NodeMenuProps) {
               {ACT_WORDS[act]}
             </button>
             <span id={`${id}-${act}`} class="small quiet">
-              {effect}
+              <Told text={effect} />
             </span>
           </li>
         ))}
@@ -40,7 +42,7 @@ export function NodeMenu({ offers, busy, say }: NodeMenuProps) {
           <ul>
             {refused.map(({ act, why }) => (
               <li key={act}>
-                <b>{ACT_WORDS[act]}</b>: {sentence(why)}
+                <b>{ACT_WORDS[act]}</b>: {sentence(said(why))}
               </li>
             ))}
           </ul>

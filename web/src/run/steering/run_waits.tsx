@@ -7,6 +7,7 @@ import * as rest from "../../wire/rest";
 import type { WaitView } from "../../wire/types";
 import { sentence } from "../run_words";
 import { whyItWaits } from "./steering_words";
+import { whyNotDone } from "../../words/said";
 import { t } from "../../words/words";
 import "./run_waits.css";
 
@@ -27,7 +28,7 @@ export function RunWaits({ run, tree, waits, going }: RunWaitsProps) {
     setNote("");
     void rest
       .steer(run, { act: "go_on", node, reason: "", helper: helperName.value })
-      .catch((error: Error) => setNote(sentence(error.message)))
+      .catch((error: Error) => setNote(sentence(whyNotDone(error))))
       .then(() => setBusy(false));
   };
   return (

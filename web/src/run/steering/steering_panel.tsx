@@ -10,6 +10,7 @@ import { sentence } from "../run_words";
 import { AutonomyChoice } from "./autonomy_choice";
 import { NodeMenu } from "./node_menu";
 import { useOffers } from "./use_offers";
+import { whyNotDone } from "../../words/said";
 import { t } from "../../words/words";
 import "./steering_panel.css";
 
@@ -33,7 +34,7 @@ export function SteeringPanel({ state, selected, newest, onSelect }: SteeringPan
     setBusy(true);
     const refused = await request.then(
       () => "",
-      (error: Error) => sentence(error.message),
+      (error: Error) => sentence(whyNotDone(error)),
     );
     setNote(refused);
     setBusy(false);

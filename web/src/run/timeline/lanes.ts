@@ -3,6 +3,7 @@ import { plain, withoutRun } from "../../tree/words";
 import type { DialogueClosed, Event, NodeDone, NodeLeftOut, NodeReset, Resolution, RobotBack } from "../../wire/types";
 import type { Told } from "../../wire/told";
 import { lastOf } from "../transcript_lines";
+import { issueKind } from "../../words/issue_kinds";
 import { t } from "../../words/words";
 
 export type LaneKind = "steps" | "faults" | "lost" | "dialogues" | "people" | "waits" | "resolutions";
@@ -127,14 +128,14 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
         endExecution(running, event);
         break;
       case "node_taken":
-        lanes.people.push(point(event, "takes", t("{helper} takes {name}", { helper: event.helper, name: plain(event.name) }), "deed", event.node));
+        lanes.people.push(point(event, t("takes|a person, a leaf"), t("{helper} takes {name}", { helper: event.helper, name: plain(event.name) }), "deed", event.node));
         break;
       case "node_undone":
-        lanes.faults.push(point(event, "undone", t("{name} is done no longer: {reason}", { name: plain(event.name), reason: event.reason }), "fault", event.node));
+        lanes.faults.push(point(event, issueKind("undone"), t("{name} is done no longer: {reason}", { name: plain(event.name), reason: event.reason }), "fault", event.node));
         break;
       case "issue_raised": {
         const about = plain(event.object ?? event.name);
-        lanes.faults.push(point(event, plain(event.issue), `${plain(event.issue)}, ${about}`, "fault", event.node));
+        lanes.faults.push(point(event, issueKind(event.issue), `${issueKind(event.issue)}, ${about}`, "fault", event.node));
         break;
       }
       case "robot_lost": {
@@ -154,7 +155,7 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
         for (const item of away.values()) item.end = event.time;
         break;
       case "dialogue_opened": {
-        const title = t("dialogue about {issue}, {part}", { issue: plain(event.issue), part: plain(event.object ?? event.name) });
+        const title = t("dialogue about {issue}, {part}", { issue: issueKind(event.issue), part: plain(event.object ?? event.name) });
         const item = bar(event, now, plain(event.object ?? event.name), title, "dialogue", event.node);
         open.set(event.dialogue, item);
         lanes.dialogues.push(item);
