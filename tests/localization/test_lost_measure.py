@@ -63,7 +63,7 @@ def test_what_looks_familiar_says_nothing_of_having_been_carried_before() -> Non
 
 def test_what_is_strange_is_so_however_well_it_fits_the_map() -> None:
     measure = LostMeasure(ITS)
-    for _ in range(3):
+    for _ in range(4):
         measure.weigh(ITS.news_after_m, 10.0, -1e9)
     assert measure.probability > ITS.lost_above
 
