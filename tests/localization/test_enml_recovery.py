@@ -263,6 +263,19 @@ def test_who_has_drifted_off_is_sooner_found_near_by_than_elsewhere_and_in_two_s
     assert off_m(found.pose, WAY[-1]) < 0.02
 
 
+def test_it_suspects_that_the_robot_is_elsewhere_where_it_cannot_say_in_which_of_two_places() -> (
+    None
+):
+    recovery = recovery_on(TWINS)
+    lost = seen_along(WAY, TWINS, np.array([20.0, 3.0, 0.0]))
+    wrong = seen_along(WAY, TWINS, WAY[0] + np.array([4.0, 0.0, 2.0]))
+    assert search(recovery, lost, wrong, 0.0, drifted=True) is None
+    assert recovery.suspects_elsewhere
+    right = seen_along(WAY, TWINS, WAY[0])
+    search(recovery, lost, right, 0.0, drifted=True)
+    assert not recovery.suspects_elsewhere
+
+
 def test_on_an_empty_map_nobody_is_found() -> None:
     nothing = VectorMap.of([])
     assert search(recovery_on(nothing), seen_along(WAY, FLOOR, WAY[0]), None, 5.0) is None
