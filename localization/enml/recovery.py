@@ -109,7 +109,7 @@ class Recovery:
 
     @property
     def suspects_elsewhere(self) -> bool:
-        """Whether the last search has found a place that is clearly likelier than here."""
+        """Whether the last search has shown that the robot is clearly likelier elsewhere than here."""
         return self._suspects
 
     def open_places(self, episode: Episode) -> list[Found]:
@@ -259,15 +259,17 @@ class Recovery:
         return found[best] if again or lead >= doubt * its.recovery_lead else None
 
     def _is_likelier(self, found: list[Found], here: Found, seen: "_Evidence") -> bool:
-        """Whether some other place is clearly likelier than here, if not than all others."""
-        its = self._parameters
+        """Whether it is clearly likelier that the robot is elsewhere, if not where.
+
+        At one of the places, or anywhere on the map.
+        """
         others = [
             each.score + self._prior(each, seen)
             for each in found
             if not same_place(each.pose, here.pose)
         ]
-        least = max(here.score + self._prior(here, seen), its.found_above)
-        return max(others, default=-np.inf) - least >= _LEAST_DOUBT * its.recovery_lead
+        lead = max([0.0, *others]) - here.score - self._prior(here, seen)
+        return lead >= _LEAST_DOUBT * self._parameters.recovery_lead
 
     def _prior(self, found: Found, seen: "_Evidence") -> float:
         """Log odds of a place: who has drifted off is near by."""
