@@ -3,6 +3,7 @@
 And what did not: what is seen again where it was.
 """
 
+from dataclasses import dataclass
 from math import cos
 
 import numpy as np
@@ -12,6 +13,7 @@ from mend.localization.enml.episode import Episode
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import PoseNode
 from mend.localization.enml.problem import Floats
+from mend.localization.enml.usual_change import UsualChange
 from mend.localization.pose import Poses, compose, relative, transform, wrap
 
 _THROUGH_M = 0.3
@@ -26,39 +28,66 @@ _OFF_MAP_TELLS = 0.2
 """Where less of a scan is on no map, all of it is to be recognized."""
 
 
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """What a scan shows beside an earlier one."""
+
+    strange: float
+    """What speaks for having been carried since then, as log odds; 0 if nothing can be said."""
+    is_with_familiar: bool = True
+    """Whether the earlier one was familiar itself, or none is; who was carried before a strange
+    one sees the same again as there, too."""
+
+
+_NOTHING = Comparison(0.0)
+
+
 class Strangeness:
     """Compares the newest scan with the last that was familiar; a strange one is not yet."""
 
     def __init__(self, parameters: EnmlParameters) -> None:
         self._parameters = parameters
+        self._usual = UsualChange(parameters)
         self._familiar: int | None = None
 
-    def weigh(self, episode: Episode, within_m: float) -> float:
-        """What speaks for having been carried since then, as log odds; 0 if nothing can be said.
+    def begin_anew(self) -> None:
+        """The scans so far are of another episode; what is usual stays so."""
+        self._familiar = None
 
-        Nothing can where the scans are farther apart than `within_m` (and radians, together).
+    def compare(self, episode: Episode, within_m: float, news: float = 0.0) -> Comparison:
+        """The newest scan beside the last familiar one.
+
+        Nothing can be said where they are farther apart than `within_m` (and radians, together).
         Only what is on no map is to be recognized, as walls look the same in many places. What
         changed, less what is recognized, is more the farther the scans are apart (metres and
-        radians together), and tells less.
+        radians together), and for who was carried some of it all is as likely as any other. The
+        scan is learned from as far as it is `news` (0 to 1).
         """
         its = self._parameters
         before = self._compared_with(episode)
         if before is None:
-            return 0.0
+            return _NOTHING
         apart = _apart(episode, before)
         if apart > within_m:
-            return 0.0
+            return _NOTHING
+        identity = episode.nodes[before].identity
+        change = self._change(episode, before)
+        usual = change - its.strange_per_m * apart
+        strange = min(change / its.carried_spread, 0.0) - self._usual.log_density(usual)
+        self._usual.learn(usual, news)
+        compared = Comparison(strange, self._familiar in (None, identity))
+        self._familiar = identity if strange > 0.0 else None
+        return compared
+
+    def _change(self, episode: Episode, before: int) -> float:
+        """What changed from a pose to the newest, less what is recognized (-1 to 2)."""
         earlier, later = episode.nodes[before], episode.nodes[-1]
         there, here = episode.poses[before], episode.poses[-1]
-        recognized = recognized_points(earlier, later, relative(there, here), its)
+        recognized = recognized_points(earlier, later, relative(there, here), self._parameters)
         off_map = ~later.is_ltf
         if off_map.sum() >= LEAST_RETURNS and off_map.mean() > _OFF_MAP_TELLS:
             recognized = recognized[off_map]
-        strange = changed(earlier, there, later, here) - float(recognized.mean())
-        beyond = strange + its.familiar_share - its.strange_per_m * apart
-        speaks = its.strange_counts * beyond / (its.strange_spread_m + apart) ** 2
-        self._familiar = earlier.identity if speaks > 0.0 else None
-        return speaks
+        return changed(earlier, there, later, here) - float(recognized.mean())
 
     def _compared_with(self, episode: Episode) -> int | None:
         """The last familiar pose, unless it is too far back, or else the last that saw enough."""

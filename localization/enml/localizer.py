@@ -86,6 +86,7 @@ class EnmlLocalizer:
         self._sight = Sight(self._parameters)
         self._unweighed = self._parameters.news_after_m
         self._searched_m = self._probation_m = 0.0
+        self._off_map_m = np.inf
         self._recovery.forget()
         self._measure.begin()
         self._strangeness = Strangeness(self._parameters)
@@ -95,7 +96,7 @@ class EnmlLocalizer:
         self._stray: Track | None = None
         self._seen: tuple[Scan, ScanPoints] | None = None
         self._since_lost_m = 0.0
-        self._drifted = self._search_at_once = False
+        self._drifted = self._search_at_once = self._is_in_doubt = False
 
     @property
     def episode_poses(self) -> Floats:
@@ -138,11 +139,12 @@ class EnmlLocalizer:
         self._recovery.move(motion)
         self._unweighed += moved_m + abs(float(motion[2]))
         self._since_lost_m += moved_m
+        self._off_map_m += moved_m
         self._searched_m += moved_m
         self._probation_m -= moved_m
         self._weigh_place()
         if self._is_lost or self._probation_m > 0.0:
-            covariance = self._look_for_place(moved_m, covariance)
+            covariance = self._look_for_place(covariance)
         self._search_at_once = False
         return self._estimate(covariance)
 
@@ -162,14 +164,16 @@ class EnmlLocalizer:
         classes = np.full(len(node.scan_points), PointClass.DF, dtype=np.int8)
         classes[node.is_stf] = PointClass.STF
         classes[node.is_ltf] = PointClass.LTF
-        lost = 1.0 if self._is_lost else self._measure.probability
+        lost = self._measure.probability
+        if self._is_lost:
+            lost = self._parameters.lost_above if self._is_in_doubt else 1.0
         return Estimate(
             pose,
             covariance,
             node.scan_points,
             classes,
             self._sight.doubted(lost),
-            self._is_lost or self._sight.is_gone,
+            (self._is_lost and not self._is_in_doubt) or self._sight.is_gone,
         )
 
     def _weigh_place(self) -> None:
@@ -179,41 +183,53 @@ class EnmlLocalizer:
             return
         # Who is lost begins anew only for what is sure, as a look at all since then is worth much.
         within_m = self._parameters.news_after_m if self._is_lost else np.inf
-        strange = self._strangeness.weigh(episode, within_m)
         its = self._parameters
+        news = 0.0 if self._is_lost else min(self._unweighed / its.news_after_m, 1.0)
+        beside = self._strangeness.compare(episode, within_m, news)
         elsewhere = 0.0
         if not self._is_lost:
             place = self._against_place(episode.nodes[-1])
             elsewhere = its.map_counts * (place - its.map_misleads)
         # Whoever stands may be carried, too: a strange scan is news, however far it drove.
-        least_m = its.news_after_m if strange > 0.0 else 0.0
-        self._measure.weigh(max(self._unweighed, least_m), strange, elsewhere)
+        least_m = its.news_after_m if beside.strange > 0.0 else 0.0
+        self._measure.weigh(max(self._unweighed, least_m), beside, elsewhere)
         self._unweighed = 0.0
         if self._measure.probability > its.lost_above:
-            self._lose(drifted=strange <= 0.0)
+            self._lose(drifted=beside.strange <= 0.0 and self._measure.is_by_map)
 
     def _against_place(self, node: PoseNode) -> float:
         """How much likelier a scan is anywhere on the map than where the robot is followed.
 
-        Infinitely, where the map shows nothing at all: who is off the map is not there.
+        Infinitely, where the map has shown nothing at all for long: who is off the map is not
+        there.
         """
         model = self._anywhere.model
         used = spread(len(node.ranges_m), model.beams)
         bearings = node.bearings[used]
-        if (node.expected_m >= node.reach_m).all():
-            sensor = compose(self._track.pose, node.sensor_offset)
-            if (look_at(self._grid, sensor, bearings, DEFAULT_MAX_RANGE_M)[1] == NOTHING).all():
-                return np.inf
+        if not self._is_off_map(node, bearings):
+            self._off_map_m = 0.0
+        if self._off_map_m >= self._parameters.off_map_for_m:
+            return np.inf
         here = log_densities(node.ranges_m[used], node.expected_m[used], model).mean()
         anywhere = self._anywhere.log_likelihood(
             node.ranges_m[used], bearings + node.sensor_offset[2]
         )
         return anywhere - model.trust * model.beams * float(here)
 
+    def _is_off_map(self, node: PoseNode, bearings: Floats) -> bool:
+        """Whether the map shows nothing around the robot, however far a laser reaches."""
+        if (node.expected_m < node.reach_m).any():
+            return False
+        sensor = compose(self._track.pose, node.sensor_offset)
+        looked = look_at(self._grid, sensor, bearings, DEFAULT_MAX_RANGE_M)[1]
+        return bool((looked == NOTHING).all())
+
     def _lose(self, *, drifted: bool) -> None:
         """Doubt the place: what is seen from now on may belong elsewhere.
 
-        Where it has drifted off, rather than been carried, that holds for the last metres, too.
+        Where it has drifted off, rather than been carried, that holds for the last metres, too. It
+        is only in doubt then until a search has ended: of all places of a map some fits what one
+        scan shows of things that are on none.
 
         A place on probation that is lost was never the right one.
         """
@@ -223,6 +239,7 @@ class EnmlLocalizer:
         self._recovery.stop()
         unplaced = self._by_itself()
         self._drifted = drifted
+        self._is_in_doubt = drifted and self._track.by is By.MAP
         if drifted:
             unplaced.go_by_itself(self._track.episode, np.diag(_LOST_STD**2))
         if self._track.by is By.ITSELF:
@@ -230,7 +247,7 @@ class EnmlLocalizer:
         else:
             self._stray = unplaced
         self._measure.begin()
-        self._strangeness = Strangeness(self._parameters)
+        self._strangeness.begin_anew()
         self._probation_m = 0.0
         self._searched_m = np.inf if drifted else 0.0
 
@@ -241,7 +258,7 @@ class EnmlLocalizer:
             track.advance(np.zeros(3), *self._seen)
         return track
 
-    def _look_for_place(self, moved_m: float, covariance: Floats) -> Floats:
+    def _look_for_place(self, covariance: Floats) -> Floats:
         """Search the map every so often; take the episode to where it clearly belongs."""
         track, recovery = self._track, self._recovery
         at_once = self._search_at_once
@@ -252,7 +269,13 @@ class EnmlLocalizer:
             recovery.begin(
                 self._unplaced.episode, followed, self._since_lost_m, drifted=self._drifted
             )
-        found = recovery.go_on(moved_m, to_its_end=at_once)
+        searches = recovery.is_searching
+        found = recovery.go_on(to_its_end=at_once)
+        if self._is_in_doubt and searches and not recovery.is_searching and found is None:
+            self._is_in_doubt = False
+            if not recovery.suspects_elsewhere:
+                self._believe(track.pose)
+            return covariance
         if found is None or (not self._is_lost and same_place(found.pose, track.pose)):
             return covariance
         moved = self._believe(found.pose)
@@ -260,10 +283,11 @@ class EnmlLocalizer:
 
     def _believe(self, place: Poses) -> Floats | None:
         """The robot is at a place; the covariance, if it was followed elsewhere."""
+        self._is_in_doubt = False
         # What a search still looked through was seen before this was known.
         self._recovery.stop()
         self._measure.begin(self._parameters.found_is_wrong)
-        self._strangeness = Strangeness(self._parameters)
+        self._strangeness.begin_anew()
         if self._track.by is By.MAP and same_place(place, self._track.pose):
             self._stray = None
             return None

@@ -7,6 +7,7 @@ is seen now is for a robot that may be anywhere than for one that was followed r
 
 from math import exp
 
+from mend.localization.enml.change import Comparison
 from mend.localization.enml.parameters import EnmlParameters
 
 _MOST_ODDS = 1e6
@@ -29,24 +30,38 @@ class LostMeasure:
         odds = self._before + self._since
         return odds / (1.0 + odds)
 
+    @property
+    def is_by_map(self) -> bool:
+        """Whether most of what speaks against here is the map, and not that scans were strange."""
+        return 2.0 * self._by_map > self._before + self._since
+
     def begin(self, probability: float = 0.0) -> None:
         """Anew, with a probability below 1 that the place is not the right one."""
-        self._before = probability / (1.0 - probability)
+        self._before = self._by_map = probability / (1.0 - probability)
         self._since = 0.0
 
-    def weigh(self, driven_m: float, strange: float, elsewhere: float) -> None:
+    def weigh(self, driven_m: float, beside: Comparison, elsewhere: float) -> None:
         """One more scan, after driving so far: log-likelihood ratios of what speaks against here.
 
-        `strange`: what it shows, beside the last familiar scan; `elsewhere`: what the map shows.
-        Scans from hardly different places say nearly the same again, and count by how far apart
-        they are; none counts for more than the parameters say.
+        `beside`: what it shows beside an earlier scan; `elsewhere`: what the map shows. Scans from
+        hardly different places say nearly the same again, and count by how far apart they are; none
+        counts for more than the parameters say, of both together.
         """
         its = self._parameters
-        news = min(driven_m / its.news_after_m, 1.0)
+        news, most = min(driven_m / its.news_after_m, 1.0), its.tells_at_most
+        strange = max(min(beside.strange, most), -most)
+        elsewhere = max(min(elsewhere, most), -its.fitting_tells_at_most)
+        if not beside.is_with_familiar:
+            self._close()
         self._since += its.carried_per_m * driven_m
-        self._since *= exp(news * max(min(strange, its.tells_at_most), -its.familiar_tells_at_most))
+        self._by_map += its.carried_per_m * driven_m
+        fits = exp(news * elsewhere)
+        self._before = min(self._before * fits, _MOST_ODDS)
+        self._by_map = min(self._by_map * fits, _MOST_ODDS)
+        self._since = min(self._since * exp(news * min(strange + elsewhere, most)), _MOST_ODDS)
         if strange <= 0.0:
-            self._before, self._since = self._before + self._since, 0.0
-        told = exp(news * max(min(elsewhere, its.tells_at_most), -its.fitting_tells_at_most))
-        self._before = min(self._before * told, _MOST_ODDS)
-        self._since = min(self._since * told, _MOST_ODDS)
+            self._close()
+
+    def _close(self) -> None:
+        """What comes next says nothing of whether the robot was carried until now."""
+        self._before, self._since = self._before + self._since, 0.0

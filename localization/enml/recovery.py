@@ -38,11 +38,10 @@ _SCANS_POLISHED = 3
 _SCANS_WEIGHED = 6
 _LEAST_DOUBT = 0.5
 """The share of the lead that is always needed, and all that is where the robot is followed."""
-_PIECES_PER_M = 20.0
-_FEWEST_PIECES, _MOST_PIECES = 10, 16
-"""So many pieces of work an update does: more where updates are farther apart."""
+_PIECES = 10
+"""So many pieces of work an update does..."""
 _RAYS_PER_PIECE_M = 850_000.0
-"""So many metres of rays over the map are a piece of work, two or three milliseconds..."""
+"""... of so many metres of rays over the map, two or three milliseconds..."""
 _RAY_BEGINS_M = 20.0
 """... and a ray takes as long as if it were so much longer (ours: on 12 maps)."""
 
@@ -87,6 +86,7 @@ class Recovery:
         """Begin anew: the robot may be elsewhere than all places so far."""
         self._open: Floats = np.zeros((0, 3))
         self._won: Poses | None = None
+        self._suspects = False
         self.stop()
 
     def stop(self) -> None:
@@ -106,6 +106,11 @@ class Recovery:
     def is_searching(self) -> bool:
         """Whether a search goes on."""
         return self._work is not None
+
+    @property
+    def suspects_elsewhere(self) -> bool:
+        """Whether the last search has shown that the robot is clearly likelier elsewhere than here."""
+        return self._suspects
 
     def open_places(self, episode: Episode) -> list[Found]:
         """The places that explain what is seen and are hardly worse than the best, best first."""
@@ -131,14 +136,12 @@ class Recovery:
         self.stop()
         self._work = self._search(_Evidence.of(episode, followed, path_m, drifted))
 
-    def go_on(self, moved_m: float, *, to_its_end: bool = False) -> Found | None:
+    def go_on(self, *, to_its_end: bool = False) -> Found | None:
         """Do what fits into one update; at the search's end where the robot is, if that is clear.
 
-        `moved_m` is how far the robot has driven since the update before. Nothing where no search
-        goes on.
+        Nothing where no search goes on.
         """
-        some = int(np.clip(_PIECES_PER_M * moved_m, _FEWEST_PIECES, _MOST_PIECES))
-        for _ in count() if to_its_end else range(some):
+        for _ in count() if to_its_end else range(_PIECES):
             if self._work is None:
                 break
             try:
@@ -161,6 +164,7 @@ class Recovery:
         here = None
         if seen.here is not None and seen.followed is not None:
             (here,) = yield from self._weigh(seen.here[None], seen.followed)
+        self._suspects = here is None or self._is_likelier(found, here, seen)
         winner = self._clear_winner(found, here, won, seen)
         if winner is None:
             return None
@@ -176,7 +180,7 @@ class Recovery:
         """The places of the lattice that look right, each where what is seen fits best."""
         wide = yield from self._lattice.candidates(seen.points, self._everywhere, _CANDIDATES)
         merits = np.zeros(len(wide))
-        for piece in self._portions(wide, seen.glance):
+        for piece in self._portions(wide, seen.glance, 2):
             glances(self._grid, seen.glance, wide[piece], merits[piece])
             yield
         places = wide[np.argsort(-merits, kind="stable")[:_CLIMBERS]]
@@ -253,6 +257,19 @@ class Recovery:
         lead = merits[best] - max([its.found_above, *rivals])
         again = won is not None and same_place(place, won)
         return found[best] if again or lead >= doubt * its.recovery_lead else None
+
+    def _is_likelier(self, found: list[Found], here: Found, seen: "_Evidence") -> bool:
+        """Whether it is clearly likelier that the robot is elsewhere, if not where.
+
+        At one of the places, or anywhere on the map.
+        """
+        others = [
+            each.score + self._prior(each, seen)
+            for each in found
+            if not same_place(each.pose, here.pose)
+        ]
+        lead = max([0.0, *others]) - here.score - self._prior(here, seen)
+        return lead >= _LEAST_DOUBT * self._parameters.recovery_lead
 
     def _prior(self, found: Found, seen: "_Evidence") -> float:
         """Log odds of a place: who has drifted off is near by."""

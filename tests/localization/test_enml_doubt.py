@@ -93,7 +93,7 @@ def episode_of(*way: tuple[np.ndarray, Poses]) -> Episode:
 def test_what_is_seen_again_speaks_against_having_been_carried() -> None:
     on = np.array([0.4, 0.1, 0.1])
     episode = episode_of((ROOM, HERE), (ROOM, on))
-    assert Strangeness(EnmlParameters()).weigh(episode, np.inf) < 0.0
+    assert Strangeness(EnmlParameters()).compare(episode, np.inf).strange < 0.0
 
 
 def test_what_is_strange_is_so_until_the_last_familiar_scan_is_too_far_back() -> None:
@@ -103,19 +103,20 @@ def test_what_is_strange_is_so_until_the_last_familiar_scan_is_too_far_back() ->
     told = []
     for pose in on[1:]:
         seen_so_far.append((HALL, pose))
-        told.append(strangeness.weigh(episode_of(*seen_so_far), np.inf))
-    assert min(told[:2]) > 5.0
-    assert told[-1] < 0.0
+        told.append(strangeness.compare(episode_of(*seen_so_far), np.inf))
+    assert min(each.strange for each in told[:2]) > 5.0
+    assert [each.is_with_familiar for each in told[:4]] == [True, True, False, True]
+    assert told[2].strange < 0.0, "it is beside one that was strange itself"
 
 
 def test_of_scans_that_are_too_far_apart_nothing_is_said() -> None:
     episode = episode_of((ROOM, HERE), (HALL, np.array([0.5, 0.0, 0.0])))
-    assert Strangeness(EnmlParameters()).weigh(episode, 0.3) == 0.0
-    assert Strangeness(EnmlParameters()).weigh(episode, 0.6) > 0.0
+    assert Strangeness(EnmlParameters()).compare(episode, 0.3).strange == 0.0
+    assert Strangeness(EnmlParameters()).compare(episode, 0.6).strange > 0.0
 
 
 def test_nothing_seen_is_neither_strange_nor_familiar() -> None:
     nowhere = np.array([[500.0, 500.0, 501.0, 500.0]])
     for worlds in ((nowhere, ROOM), (ROOM, nowhere)):
         episode = episode_of(*((world, HERE) for world in worlds))
-        assert Strangeness(EnmlParameters()).weigh(episode, np.inf) == 0.0
+        assert Strangeness(EnmlParameters()).compare(episode, np.inf).strange == 0.0

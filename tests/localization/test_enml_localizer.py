@@ -349,6 +349,30 @@ def test_a_robot_that_is_believed_outside_of_the_map_says_so_and_is_found() -> N
     assert off(estimates[-1], poses[-1])[0] < 0.1
 
 
+YARD = np.array([*box(-1.0, -30.0, 17.0, -1.0), *box(4.0, -12.0, 5.0, -11.0)])
+
+
+def out_into_the_yard(metres: float) -> Poses:
+    """Through a gap in the south wall, and on where the map shows nothing ahead."""
+    y = 4.0 - 0.15 * np.arange(round(metres / 0.15))
+    x = 8.0 + 0.3 * np.sin(0.5 * y)
+    return np.column_stack([x, y, np.arctan2(np.gradient(y), np.gradient(x))])
+
+
+@pytest.mark.slow
+def test_who_drives_on_where_the_map_shows_nothing_is_followed_by_what_is_seen_twice() -> None:
+    gap = np.array([7.0, 9.0])
+    south = [[0.0, 0.0, gap[0], 0.0], [gap[1], 0.0, 16.0, 0.0]]
+    rest = FLOOR.segments[(FLOOR.segments[:, 1] > 0.0) | (FLOOR.segments[:, 3] > 0.0)]
+    known = VectorMap.of(np.vstack([rest, south]))
+    world = np.vstack([known.segments, FURNITURE, YARD[[0, 1, 3, 4, 5, 6, 7]]])
+    poses = out_into_the_yard(20.0)
+    localizer = EnmlLocalizer(known, start=poses[0])
+    estimates = [localizer.update(*step) for step in drive(poses, world=world)]
+    assert max(off(*each)[0] for each in zip(estimates, poses, strict=True)) < 0.5
+    assert not any(each.is_lost for each in estimates)
+
+
 @pytest.mark.parametrize(
     "wrong",
     [

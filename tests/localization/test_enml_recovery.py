@@ -63,7 +63,7 @@ def search(
     recovery.begin(episode, followed, path_m, drifted=drifted)
     found = None
     while recovery.is_searching:
-        found = recovery.go_on(0.1)
+        found = recovery.go_on()
     return found
 
 
@@ -233,12 +233,12 @@ def test_a_search_is_done_a_little_at_a_time_while_the_robot_drives_on() -> None
     way = np.vstack([WAY, [[4.3, 3.2, 0.5], [4.6, 3.3, 0.6]]])
     recovery = recovery_on(FLOOR)
     recovery.begin(seen_along(WAY, FLOOR, WAY[0]), None, 2.0)
-    assert recovery.go_on(0.1) is None
+    assert recovery.go_on() is None
     recovery.move(relative(way[-3], way[-2]))
     recovery.move(relative(way[-2], way[-1]))
     found = None
     while recovery.is_searching:
-        found = recovery.go_on(0.1)
+        found = recovery.go_on()
     assert found is not None
     assert off_m(found.pose, way[-1]) < 0.02
 
@@ -248,7 +248,7 @@ def test_a_search_that_was_given_up_finds_nothing() -> None:
     recovery.begin(seen_along(WAY, FLOOR, WAY[0]), None, 2.0)
     recovery.stop()
     assert not recovery.is_searching
-    assert recovery.go_on(0.1) is None
+    assert recovery.go_on() is None
 
 
 def test_who_has_drifted_off_is_sooner_found_near_by_than_elsewhere_and_in_two_searches() -> None:
@@ -261,6 +261,19 @@ def test_who_has_drifted_off_is_sooner_found_near_by_than_elsewhere_and_in_two_s
     found = search(drifted, lost, aside, 0.0, drifted=True)
     assert found is not None
     assert off_m(found.pose, WAY[-1]) < 0.02
+
+
+def test_it_suspects_that_the_robot_is_elsewhere_where_it_cannot_say_in_which_of_two_places() -> (
+    None
+):
+    recovery = recovery_on(TWINS)
+    lost = seen_along(WAY, TWINS, np.array([20.0, 3.0, 0.0]))
+    wrong = seen_along(WAY, TWINS, WAY[0] + np.array([4.0, 0.0, 2.0]))
+    assert search(recovery, lost, wrong, 0.0, drifted=True) is None
+    assert recovery.suspects_elsewhere
+    right = seen_along(WAY, TWINS, WAY[0])
+    search(recovery, lost, right, 0.0, drifted=True)
+    assert not recovery.suspects_elsewhere
 
 
 def test_on_an_empty_map_nobody_is_found() -> None:

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from mend.localization.beam_model import BeamModel, BeamModelParameters
 from mend.localization.enml.anywhere import Anywhere
+from mend.localization.enml.change import Comparison
 from mend.localization.enml.global_search import Region
 from mend.localization.enml.lost_measure import LostMeasure
 from mend.localization.enml.parameters import EnmlParameters
@@ -23,17 +24,21 @@ MODEL = BeamModelParameters()
 def test_with_nothing_to_tell_the_prior_adds_up_over_the_way() -> None:
     measure = LostMeasure(ITS)
     for _ in range(100):
-        measure.weigh(1.0, 0.0, 0.0)
+        measure.weigh(1.0, Comparison(0.0), 0.0)
     odds = 100.0 * ITS.carried_per_m
     assert measure.probability == pytest.approx(odds / (1.0 + odds))
 
 
-@pytest.mark.parametrize("against", [(1e9, 0.0), (0.0, 1e9)], ids=["strange", "elsewhere"])
-def test_no_scan_decides_alone_and_some_in_a_row_do(against: tuple[float, float]) -> None:
+@pytest.mark.parametrize(
+    ("strange", "elsewhere"),
+    [(1e9, 0.0), (0.0, 1e9), (1e9, 1e9)],
+    ids=["strange", "elsewhere", "both"],
+)
+def test_no_scan_decides_alone_and_some_in_a_row_do(strange: float, elsewhere: float) -> None:
     measure = LostMeasure(ITS)
-    measure.weigh(1.0, *against)
+    measure.weigh(1.0, Comparison(strange), elsewhere)
     assert measure.probability < ITS.lost_above
-    measure.weigh(1.0, *against)
+    measure.weigh(1.0, Comparison(strange), elsewhere)
     assert measure.probability > ITS.lost_above
 
 
@@ -41,10 +46,10 @@ def test_scans_from_hardly_different_places_count_for_little() -> None:
     near, far = LostMeasure(ITS), LostMeasure(ITS)
     for measure, apart_m in ((near, 0.01), (far, ITS.news_after_m)):
         measure.begin(0.5)
-        measure.weigh(apart_m, 0.0, 3.0)
+        measure.weigh(apart_m, Comparison(0.0), 3.0)
     assert near.probability < 0.53
     assert far.probability > 0.9
-    near.weigh(0.0, 1e9, 1e9)
+    near.weigh(0.0, Comparison(1e9), 1e9)
     assert near.probability < 0.53
 
 
@@ -52,20 +57,42 @@ def test_what_looks_familiar_says_nothing_of_having_been_carried_before() -> Non
     measure = LostMeasure(ITS)
     measure.begin(0.4)
     for _ in range(20):
-        measure.weigh(ITS.news_after_m, -10.0, 0.0)
+        measure.weigh(ITS.news_after_m, Comparison(-10.0), 0.0)
     assert measure.probability >= 0.4
     strange = LostMeasure(ITS)
-    strange.weigh(ITS.news_after_m, 10.0, 0.0)
+    strange.weigh(ITS.news_after_m, Comparison(10.0), 0.0)
     before = strange.probability
-    strange.weigh(ITS.news_after_m, -10.0, 0.0)
+    strange.weigh(ITS.news_after_m, Comparison(-10.0), 0.0)
     assert strange.probability < before / 5.0
 
 
 def test_what_is_strange_is_so_however_well_it_fits_the_map() -> None:
     measure = LostMeasure(ITS)
     for _ in range(3):
-        measure.weigh(ITS.news_after_m, 10.0, -1e9)
+        measure.weigh(ITS.news_after_m, Comparison(10.0), -1e9)
     assert measure.probability > ITS.lost_above
+
+
+def test_what_is_familiar_beside_a_strange_scan_says_nothing_of_before_that() -> None:
+    doubts = []
+    for is_with_familiar in (True, False):
+        measure = LostMeasure(ITS)
+        measure.weigh(1.0, Comparison(10.0), 0.0)
+        strange = measure.probability
+        measure.weigh(1.0, Comparison(-10.0, is_with_familiar), 0.0)
+        doubts.append(measure.probability / strange)
+    assert doubts[0] < 0.1
+    assert doubts[1] >= 1.0
+
+
+def test_it_knows_whether_the_map_alone_speaks_against_here() -> None:
+    by_map, carried = LostMeasure(ITS), LostMeasure(ITS)
+    carried.weigh(1.0, Comparison(10.0), 0.0)
+    for measure in (by_map, carried):
+        while measure.probability < ITS.lost_above:
+            measure.weigh(1.0, Comparison(-10.0, is_with_familiar=False), 2.0)
+    assert by_map.is_by_map
+    assert not carried.is_by_map
 
 
 @given(
@@ -75,11 +102,11 @@ def test_what_is_strange_is_so_however_well_it_fits_the_map() -> None:
 )
 def test_it_stays_a_probability_and_comes_back(scans: list[tuple[float, float, float]]) -> None:
     measure = LostMeasure(ITS)
-    for scan in scans:
-        measure.weigh(*scan)
+    for driven_m, strange, elsewhere in scans:
+        measure.weigh(driven_m, Comparison(strange), elsewhere)
         assert 0.0 <= measure.probability <= 1.0
     for _ in range(20):
-        measure.weigh(1.0, -1e9, -1e9)
+        measure.weigh(1.0, Comparison(-1e9), -1e9)
     assert measure.probability < 0.01
 
 

@@ -101,6 +101,33 @@ def test_who_is_carried_says_that_it_is_lost_and_goes_on_once_it_is_told() -> No
     assert bench.world.touches == 0
 
 
+def carried_on_its_way(draw: np.random.Generator) -> BuildingBench:
+    """Into a room that looks like the others, soon after it set out."""
+    bench = localized(rooms=int(draw.integers(5, 10)), seed=int(draw.integers(1, 1000)))
+    goal, room = draw.choice(rooms_of(bench), 2, replace=False)
+    bench.go("robot1", goal)
+    for _ in range(int(draw.integers(15, 40))):
+        bench.group.advance(0.1)
+    place = bench.world.building.floors["F1"].places[room.removeprefix("F1-")]
+    yaw = float(draw.uniform(-math.pi, math.pi))
+    bench.world.robots[0].stand(FloorPose("F1", place.x, place.y, yaw))
+    return bench
+
+
+def test_who_is_carried_on_its_way_soon_says_so_or_knows_where_it_is() -> None:
+    draw = np.random.default_rng(8)
+    for _ in range(sample(3, 40)):
+        bench = carried_on_its_way(draw)
+        robot = bench.world.robots[0]
+        assert robot.belief is not None
+        for _ in range(100):
+            bench.group.advance(0.1)
+            if robot.belief.whereabouts.is_lost or off_m(bench) < 1.0:
+                break
+        else:
+            raise AssertionError(f"{off_m(bench):.1f} m off without a word")
+
+
 def test_what_a_robot_believed_is_kept() -> None:
     bench = localized()
     bench.go("robot1", rooms_of(bench)[1])

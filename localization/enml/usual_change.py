@@ -1,0 +1,56 @@
+"""How much changes from scan to scan where nobody is carried: learned on the way."""
+
+from math import exp, lgamma, log, log1p, pi
+
+from mend.localization.enml.parameters import EnmlParameters
+
+_LEAST_SPREAD = 0.05
+"""Where nothing ever changes a little does: points are few."""
+_SURPRISES = 0.05
+"""So often more changes than usual: somebody steps by, or a chair is moved..."""
+_SURPRISE_SPREAD = 0.25
+"""... by so much more in the mean (`localization_logs.py`: 1 of 12,000 scans by more than 1.3)."""
+_FIRST_SCANS = 8.0
+"""What the parameters say of it counts for so many scans."""
+_MOST_DEVIATIONS = 2.5
+"""What is farther from the mean is learned as if it were so far, as one scan proves little."""
+
+
+class UsualChange:
+    """Shares that change, less what is recognized, as normal of unknown mean and variance.
+
+    How likely the next one is follows a t distribution (Gelman et al., "Bayesian Data Analysis",
+    section 3.2), of all before it, the latest more, but for a few surprises. So a change is judged
+    by what is usual around the robot: crowds and bushes are other than walls (Lorden and Pollak
+    2005, "Nonanticipating estimation applied to sequential analysis and changepoint detection").
+    Outliers are learned in part (Huber 1964, "Robust estimation of a location parameter").
+    """
+
+    def __init__(self, parameters: EnmlParameters) -> None:
+        self._parameters = its = parameters
+        self._mean = -its.recognized_share
+        self._variance = its.recognized_spread**2
+        self._scans = _FIRST_SCANS
+
+    def learn(self, change: float, weight: float) -> None:
+        """Take in one more change, as `weight` (0 to 1) scans of which it is known."""
+        if weight <= 0.0:
+            return
+        self._scans = self._scans * (1.0 - weight / self._parameters.usual_scans) + weight
+        part = weight / self._scans
+        most = _MOST_DEVIATIONS * self._variance**0.5
+        off = min(max(change - self._mean, -most), most)
+        variance = (1.0 - part) * (self._variance + part * off**2)
+        self._variance = max(variance, _LEAST_SPREAD**2)
+        self._mean += part * off
+
+    def log_density(self, change: float) -> float:
+        """Of a change, for who is not carried."""
+        degrees = self._scans
+        scale = self._variance * (1.0 + 1.0 / self._scans)
+        norm = lgamma((degrees + 1.0) / 2.0) - lgamma(degrees / 2.0)
+        off = change - self._mean
+        told = norm - 0.5 * log(degrees * pi * scale)
+        told -= 0.5 * (degrees + 1.0) * log1p(off**2 / (degrees * scale))
+        surprise = exp(-max(off, 0.0) / _SURPRISE_SPREAD) / _SURPRISE_SPREAD
+        return log((1.0 - _SURPRISES) * exp(told) + _SURPRISES * surprise)
