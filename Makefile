@@ -58,7 +58,7 @@ screenshots: console  ## The console's pictures in docs/images, from situations 
 
 test: console $(VENV)/.kernels  ## Every test, in random order; one in a browser that fails is run once more
 	$(MAKE) --no-print-directory -j -O console-tests $(VENV)/.test-modules
-	@command -v chromium google-chrome >/dev/null || echo 'There is no Chromium on this machine: the tests in a browser are skipped.'
+	@command -v chromium-headless-shell chromium google-chrome >/dev/null || echo 'There is no Chromium on this machine: the tests in a browser are skipped.'
 	$(BIN)/python scripts/run_tests.py
 
 console-tests:

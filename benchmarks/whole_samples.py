@@ -13,7 +13,12 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "doubles"))
 from sampled import EVERYTHING
 
 ROOT = Path(__file__).parents[1]
-SAMPLING = ("from sampled import", "from forked_mend import", "from hypothesis import")
+SAMPLING = (
+    "from sampled import",
+    "from forked_mend import",
+    "from hypothesis import",
+    "mark.drawn(",
+)
 
 
 def sampled_files() -> list[str]:

@@ -9,6 +9,7 @@ from pathlib import Path
 import httpx
 import pytest
 import trustme
+from drawn_parameters import left_out
 from hypothesis import settings
 from sampled import sample
 
@@ -38,7 +39,16 @@ def pytest_collection_finish() -> None:
 
 
 @pytest.hookimpl(trylast=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what is not drawn, but for who names a test, and deal out all else."""
+    if not any("::" in each for each in config.args):
+        out = left_out(items, config.getoption("randomly_seed", 0))
+        items[:] = [each for each in items if each not in out]
+        config.hook.pytest_deselected(items=list(out))
+    _deal(items)
+
+
+def _deal(items: list[pytest.Item]) -> None:
     """Each of several processes begins with the longest tests, so that none is left at the end.
 
     The slow ones of a module stay together, and those of a folder as far as they can: what they

@@ -1,24 +1,38 @@
 """Helpers are called until somebody is on it, also while no page is looked at."""
 
 import asyncio
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator
 
 import pytest
+import pytest_asyncio
+from bare_chromium import WHOLE, launch_whole
 from console_in_browser import COUNT_TONES, OpenPage, Stage
 from console_situations import ask
-from playwright.async_api import Page, expect
+from playwright.async_api import Browser, Page, async_playwright, expect
 from push_endpoint import PushService, push_service
 from pushed_browser import PushedBrowser
 
 from mend.server.composition import Service
 from mend.server.push.subscription import PushSubscription
 
-pytestmark = pytest.mark.asyncio(loop_scope="session")
+pytestmark = [
+    pytest.mark.asyncio(loop_scope="session"),
+    pytest.mark.skipif(WHOLE is None, reason="no Chromium with notifications is on this machine"),
+]
 
 TONES = 2
 """Of one calm call."""
 
 DEVICE = "Call this device also while this page is closed"
+
+
+@pytest_asyncio.fixture(scope="module", loop_scope="session")
+async def browser() -> AsyncIterator[Browser]:
+    """Pages are opened in one that has notifications."""
+    async with async_playwright() as playwright:
+        browser = await launch_whole(playwright)
+        yield browser
+        await browser.close()
 
 
 @pytest.fixture

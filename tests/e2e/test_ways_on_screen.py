@@ -86,6 +86,7 @@ def resolved(events: Events) -> tuple[Resolution, bool]:
     return end.resolution, end.helped
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.slow(5)
 @pytest.mark.parametrize("situation", SITUATIONS)
 async def test_each_button_does_what_it_says_after_few_words(stage: Stage, situation: str) -> None:

@@ -152,6 +152,7 @@ def test_a_sound_camera_is_never_blamed_however_still_the_scene_is(robot: Broken
     assert len(robot.of(Finished)) == 1
 
 
+@pytest.mark.drawn(4)
 @pytest.mark.parametrize("seed", sample((395200,), range(395200, 395203)))
 @pytest.mark.parametrize(
     ("world", "options"),

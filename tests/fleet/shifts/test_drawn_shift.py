@@ -73,6 +73,7 @@ def walled_row(*, doors: bool) -> Building:
     return Building(BuildingDocument.model_validate_json(json.dumps(document)))
 
 
+@pytest.mark.drawn(2)
 @pytest.mark.slow(2)
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("floors", [1, 2])

@@ -56,6 +56,7 @@ def hours(leaps: bool, *, place: str, person: bool, **options: Any) -> tuple[lis
     return states, bench.cycles
 
 
+@pytest.mark.drawn(1)
 @pytest.mark.slow(2)
 @pytest.mark.parametrize("options", OPTIONS, ids=lambda each: "-".join(each))
 def test_a_leap_is_as_many_cycles_one_by_one(options: dict[str, Any]) -> None:
