@@ -1,8 +1,7 @@
 """The shipped tasks are promises: done in every world, by the robot alone, and really.
 
-The suite draws some for each world, and of most of them a sample is left to do, amid all their
-parts. From the beginning each is done in the benchmarks: here with everything, and by
-`benchmarks/library.py` over many seeds.
+Of most of them a sample is left to do, amid all their parts. From the beginning each is done in the
+benchmarks: here with everything, and by `benchmarks/library.py` over many seeds.
 """
 
 import pytest
@@ -36,14 +35,12 @@ async def require_done(task: str, world: str) -> None:
     assert outcome.moved >= max(1, min(left, len(outcome.errors_mm)) // 2)
 
 
-@pytest.mark.drawn(3)
 @pytest.mark.slow
 @pytest.mark.parametrize("task", TREES.names())
 async def test_a_shipped_task_is_done_on_the_tabletop(task: str) -> None:
     await require_done(task, "tabletop")
 
 
-@pytest.mark.drawn(2)
 @pytest.mark.slow(5)
 @pytest.mark.parametrize("task", TREES.names())
 async def test_a_shipped_task_is_done_in_the_workcell(task: str) -> None:

@@ -264,7 +264,6 @@ def test_what_is_possible_is_never_refused(
     assert told(document, tree, world) == []
 
 
-@pytest.mark.drawn(2)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES.names())
 def test_every_scene_of_the_library_is_possible_by_itself(name: str) -> None:

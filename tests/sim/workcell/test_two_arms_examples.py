@@ -15,7 +15,6 @@ EXAMPLES = Path(__file__).parents[3] / "examples" / "two_arms"
 LIBRARY = Path(__file__).parents[3] / "tasks" / "library"
 
 
-@pytest.mark.drawn(1)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("tree", "scene", "leaves"),
