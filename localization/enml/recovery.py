@@ -109,7 +109,7 @@ class Recovery:
 
     @property
     def suspects_elsewhere(self) -> bool:
-        """Whether the last search has shown that the robot is clearly likelier elsewhere than here."""
+        """Whether the last search has shown that the robot is clearly likelier elsewhere."""
         return self._suspects
 
     def open_places(self, episode: Episode) -> list[Found]:
