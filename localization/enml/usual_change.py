@@ -6,7 +6,7 @@ from mend.localization.enml.parameters import EnmlParameters
 
 _LEAST_SPREAD = 0.05
 """Where nothing ever changes a little does: points are few."""
-_SURPRISES, _SURPRISE_SPREAD = 0.1, 0.5
+_SURPRISES, _SURPRISE_SPREAD = 0.05, 0.5
 """So often more changes than usual, half-normal with this scale: somebody steps by, or a chair is
 moved (ours: among fhw's crowd 4.5 % of scans by more than 0.5 and 0.9 % by more than 0.9; 0 to 5 %
 and 0 to 1 % in 15 other drives)."""

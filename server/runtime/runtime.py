@@ -2,14 +2,11 @@
 
 import asyncio
 import logging
-from array import array
 from collections.abc import Awaitable, Callable, Mapping
 from datetime import datetime
 from functools import partial
 from typing import cast
 from uuid import UUID
-
-import numpy as np
 
 from mend.dialogue.script import Script
 from mend.errors import ConflictError, NotFoundError, UnreadableError, WrongInputError
@@ -21,10 +18,9 @@ from mend.server.dialogues.who_helps import HelpersView, who_helps
 from mend.server.errors import BusyError
 from mend.server.journal import events as ev
 from mend.server.journal.journal import Entry, Journal
-from mend.server.journal.run_index import UNREADABLE, IndexedRun, RunPage
+from mend.server.journal.run_index import IndexedRun, RunPage
 from mend.server.refusals import Refusals
 from mend.server.runtime.camera_recorder import CameraSource
-from mend.server.runtime.choosing import potentials_for
 from mend.server.runtime.clock import RunClock, SimulatedClock
 from mend.server.runtime.context import RunContext, RunSettings
 from mend.server.runtime.dialogue_driver import DialogueDriver
@@ -39,15 +35,12 @@ from mend.server.runtime.robot_owners import RobotOwners
 from mend.server.runtime.robot_proxy import RobotProxy
 from mend.server.runtime.run import Run
 from mend.server.runtime.run_dialogues import RunDialogues
+from mend.server.runtime.run_lookup import RunLookup
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.run_states import RunStates
 from mend.server.runtime.run_views import (
-    RunViewing,
-    dialogue_view,
     robot_view,
     steering_view,
-    summary,
-    summary_of_indexed,
 )
 from mend.server.runtime.steering_views import AnySteering, NodeSteeringView, SteeringView
 from mend.server.runtime.views import (
@@ -99,10 +92,10 @@ class Runtime:
         self._refusals = refusals or Refusals()
         self._states = RunStates(journal, scripts)
         self._runs: dict[UUID, Run] = {}
+        self._lookup = RunLookup(journal, self._states, self._runs)
         self._handing_on = HandingOn(
             policy, attendance or Attendance(), self._states.all_going_on, self._runs.values
         )
-        self._writing_json = asyncio.Lock()
         self._tasks: dict[UUID, asyncio.Task[None]] = {}
         self._owners = RobotOwners(robots)
         self.dialogues = RunDialogues(self._states, self._running, self._now_of)
@@ -219,7 +212,7 @@ class Runtime:
         if not self._closing:
             await self._take_up_or_fail(state)
             self._states.let_go(state)
-        return self._summary(state)
+        return self._lookup.summary(state)
 
     async def _wait_until_given_back(self, robots: list[str]) -> None:
         """A run that everybody knows to have ended may not have parted from its robots yet."""
@@ -299,23 +292,9 @@ class Runtime:
 
     # --- What there is ------------------------------------------------------------------------
 
-    def _time(self, state: RunState) -> float:
-        run = self._runs.get(state.id)
-        return run.context.clock.now() if run and not state.status.ended else state.time
-
     async def runs(self, page: RunPage) -> list[RunSummary]:
         """A page of runs, newest first. Raises `NotFoundError` for a page after an unknown run."""
-        if page.before is not None and await self._journal.index.find(page.before) is None:
-            raise NotFoundError(f"there is no run {page.before} after which the list could go on")
-        trouble = self._journal.trouble.reason
-        summaries = []
-        for indexed in await self._journal.index.page(page):
-            state = self._states.going_on(indexed.run)
-            if state is None or indexed.status == UNREADABLE:
-                summaries.append(summary_of_indexed(indexed))
-            else:
-                summaries.append(summary(state, self._time(state), trouble))
-        return summaries
+        return await self._lookup.runs(page)
 
     def helpers(self) -> HelpersView:
         """Who may be asked at this moment, and who of them is here, away or busy."""
@@ -323,50 +302,23 @@ class Runtime:
 
     async def count_runs(self) -> Mapping[RunStatus, int]:
         """How many runs there are of each status."""
-        counts = await self._journal.index.counts()
-        return {status: counts.get(status, 0) for status in RunStatus}
+        return await self._lookup.count_runs()
 
     async def run(self, run: UUID) -> RunView:
         """Everything about one run. Raises `NotFoundError` or `UnreadableError`."""
-        return await self._viewing(await self._states.find(run)).view()
+        return await self._lookup.run(run)
 
     async def run_summary(self, run: UUID) -> RunSummary:
         """One run without its nodes. Raises `NotFoundError` or `UnreadableError`."""
-        if self._states.going_on(run) is None:
-            indexed = await self._journal.index.find(run)
-            if indexed is not None and RunStatus(indexed.status).ended:
-                return summary_of_indexed(indexed)
-        return self._summary(await self._states.find(run))
+        return await self._lookup.run_summary(run)
 
     async def run_json(self, run: UUID) -> list[bytes]:
         """What `run` returns, in JSON, in pieces."""
-        # Each passes the loop on after a piece: all at once would make others wait for all of them.
-        async with self._writing_json:
-            return await self._viewing(await self._states.find(run)).json()
-
-    def _viewing(self, state: RunState) -> RunViewing:
-        leaves = np.asarray(state.tree.leaves, dtype=np.int64)
-        potentials = np.zeros(len(state.tree))
-        run = self._runs.get(state.id)
-        for proxy in run.proxies.values() if run else ():
-            of_side = potentials_for(state, proxy, leaves)
-            potentials[leaves] = np.maximum(potentials[leaves], of_side)
-        trouble = self._journal.trouble.reason
-        return RunViewing(state, self._time(state), array("d", potentials.tobytes()), trouble)
-
-    def _summary(self, state: RunState) -> RunSummary:
-        return summary(state, self._time(state), self._journal.trouble.reason)
+        return await self._lookup.run_json(run)
 
     async def snapshot(self, seq: int | None) -> Snapshot:
         """The state after event `seq`, or after the last one without it."""
-        head = self._journal.head
-        at = head if seq is None else min(seq, head)
-        states = await self._states.open_at(at)
-        return Snapshot(
-            seq=at,
-            runs=[self._summary(each) for each in states],
-            dialogues=[dialogue_view(d) for each in states for d in each.open_dialogues],
-        )
+        return await self._lookup.snapshot(seq)
 
     # --- What people ask for ------------------------------------------------------------------
 
@@ -383,13 +335,13 @@ class Runtime:
         """Stop a run where it is. Raises `ConflictError` unless it is running."""
         running = await self._running(run)
         await running.request(partial(running.pause, author))
-        return self._summary(running.context.state)
+        return self._lookup.summary(running.context.state)
 
     async def resume(self, run: UUID, author: ev.Author | None = None) -> RunSummary:
         """Let a paused run go on. Raises `ConflictError` unless it is paused."""
         running = await self._running(run)
         await running.request(partial(running.resume, author))
-        return self._summary(running.context.state)
+        return self._lookup.summary(running.context.state)
 
     async def abort(self, run: UUID, author: ev.Author | None = None) -> RunSummary:
         """End a run. Raises `ConflictError` if it has ended.
@@ -398,7 +350,7 @@ class Runtime:
         """
         running = await self._running(run)
         await running.abort_at_once(author)
-        return self._summary(running.context.state)
+        return self._lookup.summary(running.context.state)
 
     async def take_leaf(
         self, run: UUID, node: str, helper: str, author: ev.Author | None = None
@@ -406,13 +358,13 @@ class Runtime:
         """Have a leaf be a person's, who does it themselves. Raises as `People.take`."""
         running = await self._running(run)
         await running.request(lambda: running.people.take(node, helper, author))
-        return self._summary(running.context.state)
+        return self._lookup.summary(running.context.state)
 
     async def give_leaf_back(self, run: UUID, node: str, helper: str) -> RunSummary:
         """Have it be anybody's again. Raises as `People.give_back`."""
         running = await self._running(run)
         await running.request(lambda: running.people.give_back(node, helper))
-        return self._summary(running.context.state)
+        return self._lookup.summary(running.context.state)
 
     async def say_of_leaf(
         self, run: UUID, words: str, helper: str, author: ev.Author | None = None

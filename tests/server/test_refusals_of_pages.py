@@ -2,7 +2,7 @@
 
 from collections.abc import AsyncIterator
 from typing import Any
-from uuid import uuid4
+from uuid import UUID
 
 import httpx
 import pytest
@@ -13,6 +13,7 @@ from mend.server.runtime.steering import effect_of
 from mend.tasks.steering_rules import SteeringAct
 
 FILES = ("clauses", "refusals")
+NOBODY = UUID(int=7)
 
 
 def sentences(response: httpx.Response) -> list[str]:
@@ -33,17 +34,17 @@ async def client() -> AsyncIterator[httpx.AsyncClient]:
 @pytest.mark.parametrize(
     ("method", "path", "body"),
     [
-        ("GET", f"/api/runs/{uuid4()}", None),
-        ("POST", f"/api/runs/{uuid4()}/pause", None),
-        ("POST", f"/api/runs/{uuid4()}/abort", None),
+        ("GET", f"/api/runs/{NOBODY}", None),
+        ("POST", f"/api/runs/{NOBODY}/pause", None),
+        ("POST", f"/api/runs/{NOBODY}/abort", None),
         ("POST", "/api/runs", {"tree": "eket", "seed": -1}),
         ("POST", "/api/runs", {"tree": "eket", "seed": 1.5}),
         ("POST", "/api/runs", {"tree": "eket", "max_attempts": 1000}),
         ("GET", "/api/trees/nope", None),
         ("DELETE", "/api/trees/nope", None),
         ("GET", "/api/scenes/nope", None),
-        ("GET", f"/api/pictures/{uuid4()}", None),
-        ("DELETE", f"/api/push/subscriptions/{uuid4().hex}", None),
+        ("GET", f"/api/pictures/{NOBODY}", None),
+        ("DELETE", f"/api/push/subscriptions/{NOBODY.hex}", None),
         ("GET", "/api/nowhere", None),
     ],
 )
