@@ -43,7 +43,7 @@ async def test_what_robots_do_is_followed_on_plan_and_chart(
 ) -> None:
     site = await open_office_with_fleet(service, 5.0, robots=2, floors=2)
     page = await open_page("/", **CALM)
-    await page.get_by_role("link", name="Fleet").click(timeout=LONG_MS)
+    await page.get_by_role("link", name="Fleet", exact=True).click(timeout=LONG_MS)
     await expect(row(page, "ROBOT1")).to_contain_text("has nothing to do", timeout=LONG_MS)
     # Also who has never been in a run says where it is.
     await expect(row(page, "ROBOT1")).to_contain_text(re.compile("On F1, at charger1"))
