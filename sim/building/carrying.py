@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from mend.maps.building.building import Building, Floor
+from mend.maps.building.building import Building, Floor, FloorPlace, PlaceKind
 from mend.sim.building.building_robot import BuildingRobot
 from mend.sim.building.floor_pose import FloorPose
 
@@ -41,16 +41,21 @@ class Carrying:
         if not driving:
             return False
         robot = driving[int(self._rng.integers(len(driving)))]
-        for _ in range(_TRIES_TO_PUT_DOWN):
-            to = self._draw(robot.at.floor, building.floors[robot.at.floor])
+        places = _within_reach(building.floors[robot.at.floor])
+        for _ in range(_TRIES_TO_PUT_DOWN if places else 0):
+            to = self._draw(robot.at.floor, places)
             if not touches(to, robot.radius_m + _SPARE_M, robot):
                 robot.stand(to)
                 return True
         return False
 
-    def _draw(self, name: str, floor: Floor) -> FloorPose:
-        """At some place of a floor, turned somehow."""
-        places = list(floor.places.values())
+    def _draw(self, floor: str, places: Sequence[FloorPlace]) -> FloorPose:
+        """At one of the places, turned somehow."""
         place = places[int(self._rng.integers(len(places)))]
         yaw = float(self._rng.uniform(-math.pi, math.pi))
-        return FloorPose(name, place.x, place.y, yaw)
+        return FloorPose(floor, place.x, place.y, yaw)
+
+
+def _within_reach(floor: Floor) -> list[FloorPlace]:
+    """Where people can put a robot: a shaft is shut while its cabin is elsewhere."""
+    return [each for each in floor.places.values() if each.kind is not PlaceKind.ELEVATOR]
