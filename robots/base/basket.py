@@ -9,6 +9,8 @@ FELT_KG = 0.1
 """What weighs less than this is nothing that a robot is asked to carry."""
 UNSURE_KG = 0.03
 """What a load cell shows may change by so much although nothing has been put in or taken out."""
+MISSED_KG = FELT_KG / 2.0
+"""A basket that is lighter by this lacks something: half of the lightest thing there may be."""
 
 
 @dataclass(slots=True)
@@ -135,7 +137,8 @@ class LoadSense:
     def taken(self, weight_kg: float) -> FeltLoad | None:
         """What keeps the basket from being lighter by this; None where it is."""
         change_kg = self.change_kg()
-        if abs(change_kg + weight_kg) < FELT_KG:
+        # A light thing that is still there must not pass for one that is gone.
+        if abs(change_kg + weight_kg) < min(FELT_KG, weight_kg / 2.0):
             return None
         if abs(change_kg) <= UNSURE_KG:
             return "nothing"
@@ -154,4 +157,4 @@ class LoadSense:
 
     def as_remembered(self) -> FeltLoad | None:
         """What keeps the basket from holding all that was given; None where it does."""
-        return None if self.change_kg() > -FELT_KG else "lighter"
+        return None if self.change_kg() > -MISSED_KG else "lighter"

@@ -3,7 +3,7 @@
 from typing import ClassVar
 
 from mend.documents.strict_model import StrictModel
-from mend.robots.base.basket import FELT_KG
+from mend.robots.base.basket import MISSED_KG
 from mend.robots.base.monitors.monitor import BaseMonitor, BaseView
 from mend.robots.execution.monitor import ANY_BEHAVIOR, NoParameters, Reaction
 from mend.robots.execution.phase import Phase
@@ -22,7 +22,7 @@ class ItemTaken(BaseMonitor[NoParameters]):
     parameters: ClassVar[type[StrictModel]] = NoParameters
 
     def check(self, view: BaseView) -> Detection | None:
-        if view.missing_kg < FELT_KG:
+        if view.missing_kg < MISSED_KG:
             return None
         told = f"my basket is {view.missing_kg:.1f} kg lighter than it was"
         return Detection(camera=BASKET, explanation=told)

@@ -1,8 +1,10 @@
 """What a robot makes of its load cell: how much was put in or taken out, and never what."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from mend.robots.base.basket import BasketMemory, LoadSense, NoBasket
+from mend.robots.base.basket import FELT_KG, UNSURE_KG, BasketMemory, LoadSense, NoBasket
 
 
 class Scales(NoBasket):
@@ -60,6 +62,27 @@ def test_what_is_taken_out_has_to_weigh_what_was_put_in(less_kg: float, felt: st
     scales.memory.note_given("mail", scales.load_kg())
     scales.shows_kg -= less_kg
     assert load.taken(scales.memory.items["mail"]) == felt
+
+
+OFF_KG = st.floats(-UNSURE_KG / 2.0, UNSURE_KG / 2.0)
+
+
+@given(st.floats(FELT_KG, 2.0), OFF_KG, OFF_KG, OFF_KG)
+def test_the_lightest_thing_is_felt_as_there_and_as_gone(
+    weighs_kg: float, off_before_kg: float, off_given_kg: float, off_now_kg: float
+) -> None:
+    scales = Scales()
+    load = LoadSense(scales)
+    scales.shows_kg = off_before_kg
+    load.change_kg()
+    scales.shows_kg = weighs_kg + off_given_kg
+    scales.memory.note_given("mail", scales.load_kg())
+    scales.shows_kg = weighs_kg + off_now_kg
+    assert load.taken(scales.memory.items["mail"]) == "nothing"
+    assert load.as_remembered() is None
+    scales.shows_kg = off_now_kg
+    assert load.taken(scales.memory.items["mail"]) is None
+    assert load.as_remembered() == "lighter"
 
 
 def test_what_an_empty_basket_shows_counts_for_nothing() -> None:

@@ -53,7 +53,8 @@ def view(
         (ItemMissing, view(lacks="mail"), "nobody has given me the mail"),
         (ItemMissing, view(), None),
         (ItemTaken, view(missing_kg=0.62), "my basket is 0.6 kg lighter than it was"),
-        (ItemTaken, view(missing_kg=0.09), None),
+        (ItemTaken, view(missing_kg=0.07), "my basket is 0.1 kg lighter than it was"),
+        (ItemTaken, view(missing_kg=0.03), None),
     ],
 )
 def test_it_tells_what_it_waits_for_or_misses(
