@@ -9,7 +9,8 @@ closed that are not, requests are cancelled and changed, things are stolen from 
 REST), people step in the way, robots are carried away. Whom robots ask is willing, unwilling,
 silent or rude, forgets things, does not do what they said, or lies about where a robot is. The
 service, or robots where they are in a process of their own, are killed (`kill -9`) at drawn moments
-of the site's clock, or as a thing changes hands, and start again on what they kept. Then all is put
+of the site's clock, as a thing changes hands, or as a robot charges (those of every third building
+have to), and start again on what they kept. Then all is put
 right, and everything has to come to its end. The ledger (`ordeal_ledger.py`) compares what the
 journal says with what the world really was.
 

@@ -8,8 +8,9 @@ import json
 import os
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from dataclasses import asdict, dataclass
+from enum import StrEnum
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -18,21 +19,28 @@ PLAN = ".kills"
 """The plan is in a file of the truth's name with this behind it."""
 SERVICE, WORLD = "service", "robots"
 PATIENCE_S = 20.0
-"""A kill that waits for a thing to change hands waits no longer."""
+"""A kill that waits for a moment waits no longer."""
 LONGEST_PAUSE_S = 0.05
+
+
+class Moment(StrEnum):
+    """What a kill may wait for: that a thing changes hands, or that a robot charges."""
+
+    CHANGES_HANDS = "changes_hands"
+    CHARGES = "charges"
 
 
 @dataclass(frozen=True, slots=True)
 class Kill:
     """`kill -9` of the service, or of a world that has a process of its own.
 
-    `at_s`: when, by the world's clock; with `waits` the first time from then on that a thing
-    changes hands. `pause_s` of wall time, in which the world stands still, the service goes on.
+    `at_s`: when, by the world's clock; with `waits_for` the first time from then on that this is
+    so. `pause_s` of wall time, in which the world stands still, the service goes on.
     """
 
     at_s: float
     whom: str
-    waits: bool
+    waits_for: Moment | None
     pause_s: float
 
 
@@ -43,7 +51,7 @@ def draw_kills(chance: Random, kills: int, ends_s: float, *, apart: bool) -> lis
         Kill(
             at_s=at_s,
             whom=WORLD if apart and chance.random() < 0.5 else SERVICE,
-            waits=chance.random() < 0.5,
+            waits_for=chance.choice((None, None, Moment.CHANGES_HANDS, Moment.CHARGES)),
             pause_s=chance.uniform(0.0, LONGEST_PAUSE_S) if apart else 0.0,
         )
         for at_s in times_s
@@ -70,14 +78,15 @@ class Executioner:
         self._left = [Kill(**each) for each in drawn[kills_so_far(truth) :]]
         self._write, self._service = write, os.getppid() if apart else os.getpid()
 
-    def look(self, now_s: float, *, changed_hands: bool) -> None:
-        """Kill if it is time; returns only if not."""
+    def look(self, now_s: float, moments: Set[Moment]) -> None:
+        """Kill if it is time, where all of `moments` are so; returns only if not."""
         if not self._left or now_s < self._left[0].at_s:
             return
         kill = self._left[0]
-        if kill.waits and not changed_hands and now_s < kill.at_s + PATIENCE_S:
+        waits = kill.waits_for is not None and kill.waits_for not in moments
+        if waits and now_s < kill.at_s + PATIENCE_S:
             return
-        self._write("killed", whom=kill.whom, due_s=kill.at_s, waited=kill.waits)
+        self._write("killed", whom=kill.whom, due_s=kill.at_s, waits_for=kill.waits_for)
         time.sleep(kill.pause_s)
         if kill.whom == SERVICE and self._service == os.getppid():
             os.kill(self._service, signal.SIGKILL)

@@ -56,6 +56,8 @@ STANDS_STILL_S = 180.0
 DIES_S = 10.0
 """What does not answer, and has not ended for so long, was not killed (wall time)."""
 KILLED_AGAIN = 0.2
+SMALL_BATTERY_WH = 6.0
+"""Of robots that have to charge: such a one stands for 6 min."""
 LATEST_S = 120.0
 """Kills come so much later than what happens at the latest, by the site's clock."""
 SETTINGS = {
@@ -78,6 +80,7 @@ class Drawn:
     robots: int
     localizer: str
     apart: bool
+    battery_wh: float
 
     @classmethod
     def of(cls, seed: int) -> "Drawn":
@@ -90,6 +93,7 @@ class Drawn:
             robots=chance.randint(2, 5),
             localizer="enml" if seed % 4 == 0 else "exact",
             apart=seed % 2 == 0,
+            battery_wh=SMALL_BATTERY_WH if seed % 3 == 0 else 0.0,
         )
 
     @property
@@ -99,13 +103,15 @@ class Drawn:
             "localizer": self.localizer, "unmapped": 0.1, "shut_doors": 0.3, "people": 3,
             "wrong_floors": 0.2, "forgetful": 0.1, "no_shows": 0.1, "dawdling": 0.2,
             "blocked_hallways": 0.1, "carried_every_s": 120.0, "lies": 0.1, "steals_every_s": 240.0,
+            "battery_wh": self.battery_wh,
         }  # fmt: skip
 
     def __str__(self) -> str:
         process = "a process of its own" if self.apart else "the service's process"
         return (
             f"seed {self.seed}: {self.floors} floors, {self.rooms} rooms each, {self.robots} robots"
-            f" ({self.localizer}), its world in {process}"
+            f" ({self.localizer}{', small batteries' if self.battery_wh else ''}),"
+            f" its world in {process}"
         )
 
 

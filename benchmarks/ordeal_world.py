@@ -16,7 +16,7 @@ from pathlib import Path
 from random import Random
 from typing import Annotated, Any, ClassVar
 
-from ordeal_kills import Executioner
+from ordeal_kills import Executioner, Moment
 from pydantic import Field
 
 from mend.sim.building.adapter import BuildingAdapter
@@ -34,7 +34,7 @@ CALM = ".calm"
 """Once a file of the truth's name with this behind it is there, nobody lies any more."""
 STATE_EVERY_S = 0.5
 TOUCHES_M = 0.001
-PROMISED = (Act.RELEASE, Act.PUT_IN, Act.TAKE_OUT, Act.SEND_PERSON)
+PROMISED = (Act.RELEASE, Act.PUT_IN, Act.TAKE_OUT, Act.SEND_PERSON, Act.CHARGE)
 
 
 class WitnessedOptions(BuildingOptions):
@@ -127,7 +127,9 @@ class Witness:
 
     def _look_for_kills(self) -> None:
         changed_hands, self._changed_hands = self._changed_hands, False
-        self._executioner.look(self._world.time_s(), changed_hands=changed_hands)
+        charges = any(each.charging and each.share < 1.0 for each in self._world.batteries)
+        so = {Moment.CHANGES_HANDS: changed_hands, Moment.CHARGES: charges}
+        self._executioner.look(self._world.time_s(), {each for each, is_so in so.items() if is_so})
 
     def _steal(self) -> None:
         """Somebody takes a thing out of a basket, if there is any in one."""

@@ -8,10 +8,19 @@ from random import Random
 from typing import Any
 
 import pytest
-from ordeal_kills import PATIENCE_S, SERVICE, WORLD, Executioner, Kill, draw_kills, write_kills
+from ordeal_kills import (
+    PATIENCE_S,
+    SERVICE,
+    WORLD,
+    Executioner,
+    Kill,
+    Moment,
+    draw_kills,
+    write_kills,
+)
 
-AT_ONCE = Kill(at_s=10.0, whom=SERVICE, waits=False, pause_s=0.0)
-LATER = Kill(at_s=12.0, whom=WORLD, waits=True, pause_s=0.0)
+AT_ONCE = Kill(at_s=10.0, whom=SERVICE, waits_for=None, pause_s=0.0)
+LATER = Kill(at_s=12.0, whom=WORLD, waits_for=Moment.CHARGES, pause_s=0.0)
 
 
 class World:
@@ -42,32 +51,32 @@ def world(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> World:
 
 def test_each_comes_in_its_turn_and_once(world: World) -> None:
     first = world.begins()
-    first.look(9.95, changed_hands=True)
+    first.look(9.95, {Moment.CHANGES_HANDS})
     assert world.killed == []
-    first.look(10.0, changed_hands=False)
+    first.look(10.0, set())
     assert world.killed == [os.getppid(), os.getpid()]
     world.killed.clear()
 
     second = world.begins()
-    second.look(11.0, changed_hands=True)
-    second.look(12.0, changed_hands=False)
+    second.look(11.0, {Moment.CHARGES})
+    second.look(12.0, {Moment.CHANGES_HANDS})
     assert world.killed == []
-    second.look(12.5, changed_hands=True)
+    second.look(12.5, {Moment.CHANGES_HANDS, Moment.CHARGES})
     assert world.killed == [os.getpid()]
     world.killed.clear()
 
-    world.begins().look(100.0, changed_hands=True)
+    world.begins().look(100.0, {*Moment})
     assert world.killed == []
 
 
 def test_one_that_waits_in_vain_comes_all_the_same(world: World) -> None:
     write_kills([LATER], world.truth)
-    world.begins().look(LATER.at_s + PATIENCE_S, changed_hands=False)
+    world.begins().look(LATER.at_s + PATIENCE_S, set())
     assert world.killed == [os.getpid()]
 
 
 def test_a_world_in_the_process_of_its_service_kills_that_alone(world: World) -> None:
-    world.begins(apart=False).look(10.0, changed_hands=False)
+    world.begins(apart=False).look(10.0, set())
     assert world.killed == [os.getpid()]
 
 

@@ -12,7 +12,7 @@ from forked_mend import FORKED
 from ordeal_of_building import BuildingOrdeal, Drawn
 from sampled import sample
 
-SMALL = Drawn(seed=9, floors=1, rooms=6, robots=2, localizer="exact", apart=True)
+SMALL = Drawn(seed=9, floors=1, rooms=6, robots=2, localizer="exact", apart=True, battery_wh=0.0)
 MINUTES, EVENTS = sample((0.2, 5), (0.4, 10))
 """So long things happen, in which both kills come, and more than so many do."""
 
