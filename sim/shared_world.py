@@ -7,7 +7,7 @@ from mend.robots.link.messages import Intervened
 from mend.robots.robot import Robot
 from mend.sim.simulated_agent import SimulatedAgent
 from mend.sim.surroundings import Surroundings
-from mend.sim.world import World
+from mend.sim.world import World, WorldSetup
 from mend.tasks.scenario import ScriptedIntervention
 
 _EPSILON_S = 1e-9
@@ -40,6 +40,17 @@ class SharedWorld:
         self._speed = speed
         if snapshot is not None:
             self._surroundings.restore(snapshot)
+
+    @classmethod
+    def of(cls, setup: WorldSetup, world: World, robots: Sequence[Robot]) -> "SharedWorld":
+        """One as it is told at its start. Raises `ValueError` for a snapshot that does not fit."""
+        return cls(
+            world,
+            robots,
+            speed=setup.speed,
+            interventions=setup.interventions,
+            snapshot=setup.snapshot,
+        )
 
     @property
     def world(self) -> World:

@@ -107,13 +107,7 @@ class Buildings:
                 zip(setup.robots, frames.values(), world.robots, strict=True)
             )
         ]
-        return SharedWorld(
-            world,
-            robots,
-            speed=setup.speed,
-            interventions=setup.interventions,
-            snapshot=setup.snapshot,
-        )
+        return SharedWorld.of(setup, world, robots)
 
 
 def _start(building: Building, base: Base) -> FloorPose:

@@ -4,11 +4,9 @@ from collections.abc import Sequence
 
 from mend.robots.arm.body import Reach
 from mend.robots.arm.feasibility.robots import ArmKind, check_for_each_robot
-from mend.robots.arm.subsystem import ArmSubsystem
-from mend.robots.catalogue import Catalogue
-from mend.robots.robot import Robot
 from mend.robots.vision.color_model import ColorModel
 from mend.robots.vision.lookalikes import find_lookalikes
+from mend.sim.arm_robots import arm_robots
 from mend.sim.not_for_arms import not_for_arms
 from mend.sim.shared_world import SharedWorld
 from mend.sim.tabletop.body import StraightPlanner
@@ -20,8 +18,6 @@ from mend.sim.tabletop.world import TabletopWorld, reach_for
 from mend.sim.world import WorldSetup
 from mend.sim.world_options import read_options
 from mend.tasks.definition import BehaviorNode, GoalNode
-from mend.tasks.frames import frames_of
-from mend.tasks.plugins import load_plugins
 from mend.tasks.scene import Scene
 from mend.tasks.scene_problem import SceneProblem
 
@@ -64,32 +60,7 @@ class Tabletops:
         options = read_options(TabletopOptions, "tabletop", setup.options)
         world = TabletopWorld(setup.scene, setup.seed, options)
         colors = learn_colors(setup.scene, options)
-        frames = frames_of(setup.scene).values()
-        robots = [
-            Robot(
-                name,
-                body,
-                [
-                    ArmSubsystem(
-                        body,
-                        colors,
-                        Catalogue.from_scene(frame.scene_to_robot(setup.scene)),
-                        load_plugins("mend.behaviors"),
-                        load_plugins("mend.monitors"),
-                        # As fast as possible, nobody watches: what no monitor needs costs time.
-                        films=setup.speed is not None,
-                    )
-                ],
-            )
-            for name, frame, body in zip(setup.robots, frames, world.bodies, strict=True)
-        ]
-        return SharedWorld(
-            world,
-            robots,
-            speed=setup.speed,
-            interventions=setup.interventions,
-            snapshot=setup.snapshot,
-        )
+        return SharedWorld.of(setup, world, arm_robots(setup, world.bodies, colors))
 
 
 TABLETOPS = Tabletops()
