@@ -18,8 +18,6 @@ from typing import Any
 PLAN = ".kills"
 """The plan is in a file of the truth's name with this behind it."""
 SERVICE, WORLD = "service", "robots"
-PATIENCE_S = 20.0
-"""A kill that waits for a moment waits no longer."""
 LONGEST_PAUSE_S = 0.05
 
 
@@ -28,6 +26,10 @@ class Moment(StrEnum):
 
     CHANGES_HANDS = "changes_hands"
     CHARGES = "charges"
+
+
+PATIENCE_S = {Moment.CHANGES_HANDS: 20.0, Moment.CHARGES: 60.0}
+"""A kill that waits for a moment waits no longer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,8 +85,8 @@ class Executioner:
         if not self._left or now_s < self._left[0].at_s:
             return
         kill = self._left[0]
-        waits = kill.waits_for is not None and kill.waits_for not in moments
-        if waits and now_s < kill.at_s + PATIENCE_S:
+        moment = kill.waits_for
+        if moment and moment not in moments and now_s < kill.at_s + PATIENCE_S[moment]:
             return
         self._write("killed", whom=kill.whom, due_s=kill.at_s, waits_for=kill.waits_for)
         time.sleep(kill.pause_s)

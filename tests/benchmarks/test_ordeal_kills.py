@@ -71,7 +71,7 @@ def test_each_comes_in_its_turn_and_once(world: World) -> None:
 
 def test_one_that_waits_in_vain_comes_all_the_same(world: World) -> None:
     write_kills([LATER], world.truth)
-    world.begins().look(LATER.at_s + PATIENCE_S, set())
+    world.begins().look(LATER.at_s + PATIENCE_S[Moment.CHARGES], set())
     assert world.killed == [os.getpid()]
 
 
