@@ -16,6 +16,8 @@ from typing import Any
 from chaos_ledger import Ledger, Row
 from chaos_witness import Witness
 from dispatch_ledger import leads
+from ordeal_lies import Misled
+from ordeal_people import is_near
 from ordeal_truth import MOMENT_S, SPARE_S, Truth
 
 from mend.dialogue.evidence import Change
@@ -63,6 +65,7 @@ class OrdealLedger:
         """What was handed over to somebody else, or something else for it: nobody could know."""
         for row in self._of("request_changed"):
             self._what[row.body["request"]].append(row)
+        self._misled = Misled((each.body for each in self._rows), self._was_at)
 
     def _of(self, *kinds: str) -> list[Row]:
         return [each for each in self._rows if each.kind in kinds]
@@ -169,12 +172,14 @@ class OrdealLedger:
                 door = f"{floor}/{named.split(QUOTE)[1]}"
                 raised[body["robot"]] = door, at_s
                 shut = list(self._truth.shut_between(at_s - MOMENT_S, at_s + MOMENT_S))
-                if not any(door in each for each in shut):
+                knows = not self._misled.is_misled(body["robot"], at_s)
+                if knows and not any(door in each for each in shut):
                     yield f"event {row.seq}: {body['robot']} says that {door} is shut: it is not"
             elif body["change"] == Change.CLEARED:
                 door, raised_s = raised[body["robot"]]
                 shut = list(self._truth.shut_between(raised_s, at_s + MOMENT_S))
-                if all(door in each for each in shut):
+                knows = not self._misled.is_misled(body["robot"], at_s)
+                if knows and all(door in each for each in shut):
                     yield f"event {row.seq}: {body['robot']} sees {door} open: it is shut"
 
     # --- Requests -------------------------------------------------------------------------------
@@ -239,7 +244,10 @@ class OrdealLedger:
         if action in FETCHES and self._had(number, begun):
             # What a robot has, it need not go and fetch.
             return
-        if not any(self._away_m(each["robots"][number], place) <= AT_M for each in states):
+        ended_s = datetime.fromisoformat(ended["wall_time"]).timestamp()
+        knows = not self._misled.is_misled(ended["robot"], ended_s)
+        came = any(self._away_m(each["robots"][number], place) <= AT_M for each in states)
+        if knows and not came:
             nearest = min((self._away_m(e["robots"][number], place) for e in states), default=-1.0)
             yield f"{said}, and its robot was {nearest:.1f} m off"
         what = self._what[ended["booking"]][-1].body["what"]
@@ -275,6 +283,11 @@ class OrdealLedger:
         before = next(self._truth.items_between(begun["at_s"], begun["at_s"]))
         item = before.get(item_of(what["what"], begun["booking"]))
         return item is not None and item[1] == number and not item[2]
+
+    def _was_at(self, robot: str, said: str, at_s: float) -> bool:
+        """Whether a robot was at a place, as it is said, at a wall time."""
+        at = self._truth.robot_at(self._setting.robots.index(robot), at_s)
+        return at is not None and is_near(self._setting.building, self._setting.scene, at, said)
 
     def _away_m(self, at: Sequence[Any], place: str) -> float:
         pose = self._setting.scene.places[self._names.in_scene(place)].pose

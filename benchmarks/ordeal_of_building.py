@@ -218,9 +218,25 @@ class BuildingOrdeal:
         return outcome
 
     async def _start(self) -> None:
+        """Until it is ready; one that is killed as it starts, when that is due, starts again."""
+        while not await self._starts():
+            self._tell(f"{self._last_s:8.1f} s  the service was killed as it started")
+
+    async def _starts(self) -> bool:
         await self._service.spawn()
         async with MendClient(self._service.url) as client:
-            await client.wait_until_ready(STARTS_S)
+            ended = asyncio.create_task(self._service.process.wait())
+            ready = asyncio.create_task(client.wait_until_ready(STARTS_S))
+            await asyncio.wait((ended, ready), return_when=asyncio.FIRST_COMPLETED)
+            for each in (ended, ready):
+                each.cancel()
+            await asyncio.gather(ended, ready, return_exceptions=True)
+        if ready.cancelled():
+            if ended.result() != -signal.SIGKILL:
+                raise UnreachableError(f"the service ended with {ended.result()} as it started")
+            return False
+        ready.result()
+        return True
 
     async def _open(self, client: MendClient) -> SiteView:
         await client.upload_scene(self.scene.model_dump_json(exclude_defaults=True), "ordeal")

@@ -3,7 +3,6 @@
 import asyncio
 import json
 import math
-import re
 from collections import Counter
 from collections.abc import Callable
 from random import Random
@@ -12,12 +11,12 @@ from uuid import uuid4
 
 from chaos_people import Follower
 from chaos_witness import AnswerAttempt, Witness
+from ordeal_lies import ASKED
 
 from mend.maps.building.building import Building
 from mend.tasks.scene import Scene
 
 MANNERS = {"willing": 70, "unwilling": 6, "silent": 8, "rude": 16}
-LOST = re.compile(r"Am I (?:at|near) (.+)\?$")
 LIES = 0.15
 NEAR_M = 1.0
 THINKS_S = 0.3
@@ -61,7 +60,7 @@ class People(Follower):
             return
 
     def _said(self, prompt: dict[str, Any], manner: str) -> str:
-        guess = LOST.search(prompt["text"])
+        guess = ASKED.search(prompt["text"])
         if guess is None:
             return "no" if manner == "unwilling" else "yes"
         true = self._is_there(prompt["robot"], guess[1])

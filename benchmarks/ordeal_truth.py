@@ -130,6 +130,11 @@ class Truth:
             if begun_s - SPARE_S <= each.t <= ended_s + SPARE_S:
                 yield each.body
 
+    def robot_at(self, number: int, at_s: float) -> list[Any] | None:
+        """Where a robot last was at a wall time, also in what a kill undid; None before all."""
+        before = [e for e in self.lines if e.what == "state" and e.body["wall_s"] <= at_s]
+        return before[-1].body["robots"][number] if before else None
+
     def items_between(self, begun_s: float, ended_s: float) -> Iterator[dict[str, list[Any]]]:
         """Where things were in a span."""
         current: dict[str, list[Any]] = {}
