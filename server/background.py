@@ -1,5 +1,6 @@
 """Work in the background that has no end: nobody waits for it, so nobody would see it fail."""
 
+import asyncio
 import logging
 import time
 from collections.abc import Callable, Iterator
@@ -8,6 +9,12 @@ from contextlib import contextmanager
 from mend.server.rare_log import RareLog
 
 log = logging.getLogger(__name__)
+
+
+def log_failure(task: asyncio.Task[None]) -> None:
+    """Log what a task that nobody waits for has failed with, once it is done, by its name."""
+    if not task.cancelled() and (error := task.exception()) is not None:
+        log.error("the %s has failed", task.get_name(), exc_info=error)
 
 
 class Endless:

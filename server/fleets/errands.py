@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from uuid import UUID, uuid4
 
 from mend.errors import ConflictError, RefusalError
+from mend.server.background import log_failure
 from mend.server.fleets.charging import Charging
 from mend.server.fleets.fleet_book import FleetBook
 from mend.server.fleets.fleet_record import Errand
@@ -83,6 +84,7 @@ class Errands:
         """Have its robot go, unless it does so already."""
         if errand.robot not in self._tasks:
             task = asyncio.create_task(self._follow(errand), name=f"errand of {errand.robot}")
+            task.add_done_callback(log_failure)
             self._tasks[errand.robot] = task
 
     async def _follow(self, errand: Errand) -> None:

@@ -173,7 +173,6 @@ class FleetAtWork:
         async with self._book.at_once:
             decided = await self._book.in_thread(self._decide, self.now_s)
             await self._book.keep()
-            under_way = self.dispatcher.legs_under_way()
             robots = self.dispatcher.fleet.robots.items()
             failed = [name for name, each in robots if not each.works]
             failed += [each for each in self._held_cabins.held if each not in failed]
@@ -183,16 +182,15 @@ class FleetAtWork:
                 execution.look_again(ready=robot in decided.ready)
             self._alarms.ring()
             self._let_time_pass(decided.wakes_s)
-            errands = list(self._errands.going.values())
+            # Nothing is begun after a break: what was under way may be over by then.
+            for errand in self._errands.going.values():
+                self._errands.carry_out(errand)
+            for leg in self.dispatcher.legs_under_way():
+                self._legs.carry_out(leg)
+            executions = self._legs.executions
+            unwanted = [executions[e.robot] for e in decided.unwanted if e.robot in executions]
         for errand in decided.charged:
             await self._errands.break_off(errand)
-        for errand in errands:
-            self._errands.carry_out(errand)
-        for leg in under_way:
-            self._legs.carry_out(leg)
-        # Nothing is begun after a break: what was under way may be over by then.
-        executions = self._legs.executions
-        unwanted = [executions[e.robot] for e in decided.unwanted if e.robot in executions]
         for execution in unwanted:
             await execution.break_off()
 

@@ -7,6 +7,7 @@ from functools import partial
 from mend.errors import ConflictError
 from mend.fleet.dispatch.leg import Leg, LegEnd, LegOutcome
 from mend.robots.link.messages import Driven
+from mend.server.background import log_failure
 from mend.server.fleets.fleet_book import FleetBook
 from mend.server.fleets.leg_execution import LegExecution, LegTurn
 from mend.server.fleets.runs import Runs
@@ -65,6 +66,7 @@ class LegsUnderWay:
         )
         self._executions[leg.robot] = execution
         task = asyncio.create_task(self._follow(leg, execution), name=f"leg of {leg.robot}")
+        task.add_done_callback(log_failure)
         self._tasks[leg.robot] = task
 
     async def _follow(self, leg: Leg, execution: LegExecution) -> None:

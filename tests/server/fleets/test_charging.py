@@ -266,6 +266,26 @@ async def test_who_leaves_its_charger_is_not_said_to_have_been_stopped_by_a_pers
         assert [(each.came, each.reason) for each in told] == [(False, BROKEN_OFF)]
 
 
+async def test_an_errand_that_ends_while_it_is_broken_off_ends_once_and_others_begin() -> None:
+    async with charging("b") as work:
+        work.site.batteries["r0"] = 0.3
+        work.fleet.start()
+        await work.runs.nth(1)
+        await work.fleet.submit(visit(place="c"), None)
+        work.runs.aborted.clear()
+        work.site.batteries["r0"] = LEAVES_AT
+        work.site.changed()
+        await until(lambda: not work.fleet.errands)
+        work.runs.aborted.set()
+        (await work.runs.nth(2)).ended.set_result(("finished", True))
+        await work.until("visit", RequestStatus.DONE)
+        await until(lambda: work.site.rests("r0"))
+        await work.fleet.operators.send("r0", "f/d", None)
+        assert (await work.runs.nth(3)).parameters["place"] == "d"
+        told = [e for e in await work.journal.read(0, 1000) if isinstance(e, ev.ErrandEnded)]
+        assert len(told) == 1
+
+
 async def test_who_could_not_charge_does_not_try_it_again_at_once() -> None:
     async with charging("b") as work:
         work.site.batteries["r0"] = 0.3
