@@ -22,9 +22,9 @@ V = TypeVar("V", bound=MonitorView)
 class Interruption(Exception):  # noqa: N818 - control flow, not an error
     """Something ends the walk through the steps: the robot reacts, and holds."""
 
-    def __init__(self, reaction: Reaction, why: str) -> None:
-        super().__init__(why)
-        self.reaction = reaction
+    def __init__(self, reaction: Reaction, issue: str) -> None:
+        super().__init__(issue)
+        self.reaction, self.issue = reaction, issue
 
 
 class MonitorFailedError(MendError):

@@ -27,6 +27,7 @@ from mend.robots.base.behaviors.progress import BaseProgress
 from mend.robots.base.behaviors.riding import Riding, place_in
 from mend.robots.base.behaviors.watch import BaseWatch
 from mend.robots.base.companion import CAUGHT_UP_M
+from mend.robots.base.monitors.low_battery import LowBattery
 from mend.robots.base.way_ahead import WayAhead
 from mend.robots.execution.command_error import CommandError
 from mend.robots.execution.execution import Execution
@@ -200,12 +201,14 @@ class BaseExecution(Execution[BaseProgress]):
 
     def _fill_up(self) -> Routine[None]:
         """Stand while it is charged because its battery was low."""
-        battery = self._base.battery
-        if battery.share >= LOW:
+        battery, progress = self._base.battery, self._progress
+        # Who was plugged in as it asked for that holds more than that by the time it goes on.
+        if not progress.ran_low and battery.share >= LOW:
             return
         while battery.charging and battery.share < ENOUGH:
             self._watch.check_if_due()
             yield
+        progress.ran_low = False
 
     def _is_there(self) -> bool:
         """Whether it is where all of its steps lead."""
@@ -241,7 +244,8 @@ class BaseExecution(Execution[BaseProgress]):
         return True
 
     def _react(self, interruption: Interruption) -> Routine[None]:
-        self._asked_whether_heard = str(interruption) == UNHEARD
+        self._progress.ran_low |= interruption.issue == LowBattery.issue
+        self._asked_whether_heard = interruption.issue == UNHEARD
         yield from super()._react(interruption)
 
     def _go_to_rest(self) -> Routine[None]:

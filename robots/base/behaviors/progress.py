@@ -44,7 +44,8 @@ class BaseProgress(Progress):
     how long it has come no nearer, although it may move. `no_way`: why it knows no way. `wait`: for
     what elevator it waits, and `standing` for what people. `heard`: somebody has said that the
     message was heard. `awaits_s`: since when it has waited for elevators that have not come.
-    `alone_since_s`: since when it has waited for whom it leads.
+    `alone_since_s`: since when it has waited for whom it leads. `ran_low`: its battery was low, and
+    it has not been charged enough since.
     """
 
     steps: Sequence[BaseStep] = ()
@@ -56,6 +57,7 @@ class BaseProgress(Progress):
     heard: bool = False
     awaits_s: dict[str, float] = field(default_factory=dict)
     alone_since_s: float | None = None
+    ran_low: bool = False
 
     @property
     def taken(self) -> BaseStep | None:

@@ -54,8 +54,9 @@ def test_a_robot_with_little_left_asks_before_it_sets_out() -> None:
     assert issue.detection.explanation == "my battery holds 10 %"
 
 
-def test_who_is_plugged_in_feels_it_and_goes_on_once_it_holds_enough() -> None:
-    bench = drained(0.1)
+@pytest.mark.parametrize("share", [0.1, 0.1499])
+def test_who_is_plugged_in_feels_it_and_goes_on_once_it_holds_enough(share: float) -> None:
+    bench = drained(share)
     bench.go(ROBOT, THERE)
     issue = bench.run_until(IssueDetected)
     bench.run()
@@ -66,6 +67,9 @@ def test_who_is_plugged_in_feels_it_and_goes_on_once_it_holds_enough() -> None:
     bench.send(ROBOT, Look(expect="charged", within_s=2.0))
     bench.run()
     assert bench.of(Looked)[-1].fulfilled
+    # It goes on a while later, and holds a little more by then than it asked for.
+    bench.send(ROBOT, Look(expect="loaded", within_s=2.0))
+    bench.run()
     bench.send(ROBOT, Resume(execution=issue.execution))
     while bench.of(StepStarted)[-1].name != f"go to {THERE}":
         assert bench.group.advance(0.05)
