@@ -88,11 +88,16 @@ class Conversation:
 
     @property
     def denied(self) -> frozenset[Expectation]:
-        """What the first look may contradict: what the issue says not to be so.
+        """What the issue says not to be so."""
+        return self._script.denied
+
+    @property
+    def contradictable(self) -> frozenset[Expectation]:
+        """What of that the first look may contradict.
 
         A robot that was contradicted before, and met the same issue again, believes the issue.
         """
-        return self._script.denied if self._outlook.unchanged == 1 else frozenset()
+        return self.denied if self._outlook.unchanged == 1 else frozenset()
 
     @property
     def looks_at_a_word(self) -> bool:

@@ -148,12 +148,13 @@ class DialogueDriver:
         first, make = self._looks.first_look(dialogue, proxy, fulfilled), self._make(dialogue)
         if dialogue.first_look is not None and first.blind:
             return
-        noted = make.first_look(first) if dialogue.first_look is None else make.looked_anew(first)
-        denied = self._looks.contradicted(dialogue, first) if dialogue.open_ask else None
-        if denied is None:
+        anew = dialogue.first_look is not None
+        noted = make.looked_anew(first) if anew else make.first_look(first)
+        right = self._looks.right_at_first(dialogue, first) if dialogue.open_ask else None
+        if right is None:
             await self._context.commit([noted])
         else:
-            call = f"put_right:{denied.seen}:{denied.change}"
+            call = f"put_right:{right.seen}:{right.change}"
             await self._converse(dialogue, call, [noted], proxy)
 
     async def _watched(self, dialogue: DialogueState, proxy: RobotProxy, fulfilled: bool) -> None:

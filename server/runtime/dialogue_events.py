@@ -130,6 +130,7 @@ class DialogueEvents:
             fulfilled=sorted(look.fulfilled),
             position=look.position,
             blind=look.blind,
+            brought=look.brought,
         )
 
     def looked_anew(self, look: LookOutcome) -> ev.LookedAnew:

@@ -66,7 +66,8 @@ class PretendRobot:
     stolen, so often; with `in_reach` it is only elsewhere on the table then. `hidden_at_place`:
     what no look can judge. `returns`: once such an object is placed, all that was stolen is back at
     its place. `slow`: it is still at its first start until it is interrupted. `wrong`: what it
-    believes to have missed or dropped stands within its reach all the time. `held` is between its
+    believes to have missed or dropped stands within its reach all the time, and it says of that
+    whether it was `brought` there. `held` is between its
     fingers all the time. Once `blinded_by` is placed its head camera is covered, until somebody
     clears its view.
     """
@@ -95,6 +96,7 @@ class PretendRobot:
     obstructed: bool = False
     felt: bool = False
     wrong: bool = False
+    brought: bool | None = False
     deaf: bool = False
     stubborn: bool = False
     patient: bool = False
@@ -346,6 +348,7 @@ class PretendRobots:
                 gone=[each for each in look.finished if self._verdict(robot, each) == "gone"],
                 held=robot.held,
                 blind="the camera is covered" if robot.blind else None,
+                brought=robot.brought if robot.wrong else None,
                 jpeg=base64.b64encode(SECOND_JPEG).decode()
                 if robot.films and not fulfilled
                 else None,

@@ -150,6 +150,32 @@ async def test_who_promises_before_the_first_look_and_does_it_is_thanked(
     assert of_type(events, ev.Resolved)[0].helped
 
 
+@pytest.mark.parametrize("answers", ["none", ["yes"]])
+async def test_who_puts_it_right_before_the_first_look_is_thanked(
+    answers: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", 0.0)
+    person = {"never": 1.0}
+    _, events = await run_with(
+        "dropped", 4, answers, times=1, person=person, wrong=True, brought=True
+    )
+    [resolved] = of_type(events, ev.Resolved)
+    assert (resolved.resolution, resolved.helped) == (Resolution.ROBOT_RETRY, True)
+    assert "Thank you." in said(events)[-1]
+    assert not any(each.failed_attempt for each in of_type(events, ev.NodeReset))
+
+
+async def test_where_nobody_can_say_who_put_it_there_nobody_says_so(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", 0.0)
+    _, events = await run_with(
+        "dropped", 4, ["yes"], times=1, person={"never": 1.0}, wrong=True, brought=None
+    )
+    assert not any(each.helped for each in of_type(events, ev.Resolved))
+    assert said(events)[2].startswith("I see the part 1 within my reach now.")
+
+
 async def test_operators_hear_of_a_robot_that_is_wrong_also_where_no_is_said_at_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
