@@ -45,6 +45,9 @@ FIRST_JPEG, SECOND_JPEG = b"\xff\xd8\xff first \xff\xd9", b"\xff\xd8\xff second 
 PARTS = {f"part_{number}": 0.01 * number for number in range(100)}
 """What there is on the table, with its y."""
 
+RELEASES = 7
+"""The step in which it lets go."""
+
 
 class Sink(Protocol):
     async def robot_connected(self, robot: str, hello: Hello) -> None: ...
@@ -265,7 +268,13 @@ class PretendRobots:
                 continue
             robot.time += 1.0
             await self.report(
-                robot, StepStarted(execution=start.execution, step=step, name=f"step {step}")
+                robot,
+                StepStarted(
+                    execution=start.execution,
+                    step=step,
+                    name=f"step {step}",
+                    phase="release" if step == RELEASES else None,
+                ),
             )
             if due:
                 faults.remove(due[0])

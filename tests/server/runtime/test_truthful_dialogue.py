@@ -293,3 +293,16 @@ async def test_who_takes_longer_than_the_deadline_is_heard_when_asked_again(
     asked, answered = of_type(events, ev.Prompt)[0], of_type(events, ev.Answered)[0]
     assert answered.time == pytest.approx(asked.time + delay_s, abs=0.1)
     assert [each.helped for each in of_type(events, ev.Resolved)] == [True]
+
+
+@pytest.mark.parametrize(("delay_s", "by"), [(0.5, "both"), (1.5, "both"), (30.0, "robot")])
+async def test_a_script_may_say_yes_until_the_gripper_opens(
+    delay_s: float, by: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", delay_s)
+    _, events = await run_with("positioning", 5, ["yes"] * 9, times=1)
+    assert of_type(events, ev.NodeDone)[0].by == by
+    [closed] = of_type(events, ev.DialogueClosed)
+    release = next(each for each in of_type(events, ev.StepStarted) if each.phase == "release")
+    assert events.index(closed) < events.index(release)
+    assert closed.reason == ("resolved" if by == "both" else "aborted")
