@@ -15,10 +15,10 @@ from mend.robots.vision.head import HeadSighting
 from mend.robots.vision.presence import Presence
 from mend.robots.vision.table_view import TableView
 
-_AT_REST_S = 0.75
+_AT_REST_S = 0.5
 """What falls from the fingers has come to rest after that, and nobody has reached in before."""
-_PERIOD_S = 0.25
-_MOST_VIEWS = 8
+_PERIOD_S = 0.2
+_MOST_VIEWS = 10
 
 
 class DrawnBack:
