@@ -50,6 +50,8 @@ PART, PLACE = "part_1", "spot_1"
 OUT_OF_REACH = Pose(x=0.95, y=-0.45)
 PATIENCE_MS = 60_000
 PATIENCE_S = 120.0
+HANDS_S = 1.0
+"""Nobody has done anything on a table sooner than that after they pressed a button."""
 HANDS = {
     r"^Hand ": Act.HAND_OVER,
     r"^(Put|Bring) .*(back|on the table)": Act.PUT_BACK,
@@ -176,6 +178,7 @@ class Player:
         if act is Act.HAND_OVER:
             await events_until(self._service, lambda all_: _holds_out(_since(all_, run)))
         about = None if act is Act.RELEASE else PART
+        await asyncio.sleep(HANDS_S)
         place = PLACE if act is Act.PLACE else None
         deed = Intervention(act=act, object=about, place=place)
         await self._service.runtime.intervene(run, deed)
