@@ -306,7 +306,9 @@ class Conversation:
         helped = change.by_a_person
         led_round = change is Change.LED_ROUND
         resolution = wanted if led_round else self._resolution_for(wanted, helped)
-        failed = not helped or self._outlook.helped_out
+        # Where nobody can say whether anybody has helped it is no failed attempt the first time.
+        untold = change is Change.UNKNOWN and self._outlook.times == 1
+        failed = not (helped or untold) or self._outlook.helped_out
         match resolution:
             case Resolution.ROBOT_RETRY if failed:
                 then = self._next_after_failure()

@@ -285,4 +285,6 @@ def _why_put_back(close: Close) -> str:
         return "it has failed after help too often"
     if close.helped:
         return "somebody has helped" if close.reason is CloseReason.RESOLVED else "it was put right"
+    if not close.failed:
+        return "nobody can say whether anybody has helped"
     return "it has failed"

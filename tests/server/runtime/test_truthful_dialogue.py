@@ -173,7 +173,25 @@ async def test_where_nobody_can_say_who_put_it_there_nobody_says_so(
         "dropped", 4, ["yes"], times=1, person={"never": 1.0}, wrong=True, brought=None
     )
     assert not any(each.helped for each in of_type(events, ev.Resolved))
-    assert said(events)[2].startswith("I see the part 1 within my reach now.")
+    assert said(events)[2] == (
+        "I see the part 1 within my reach now. I try again (still attempt 1 of 3)."
+    )
+    [reset] = of_type(events, ev.NodeReset)
+    assert (reset.failed_attempt, reset.reason) == (
+        False,
+        "nobody can say whether anybody has helped",
+    )
+
+
+async def test_nobody_can_say_that_again_and_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", 0.0)
+    person = {"never": 1.0}
+    view, events = await run_with(
+        "dropped", 4, ["yes"] * 50, person=person, wrong=True, brought=None
+    )
+    assert view.status is RunStatus.FAILED
+    resets = [each.failed_attempt for each in of_type(events, ev.NodeReset)]
+    assert resets == [False, True, True, True]
 
 
 async def test_operators_hear_of_a_robot_that_is_wrong_also_where_no_is_said_at_once(
