@@ -47,7 +47,9 @@ from mend.tasks.scenario import Person, Scenario, ScriptedIntervention, Trigger
 from mend.tasks.scene import Pose, Scene
 
 PART, PLACE = "part_1", "spot_1"
-OUT_OF_REACH = Pose(x=0.95, y=-0.45)
+OUT_OF_REACH = Pose(x=0.80, y=-0.45)
+"""Seen on a table as long as it has to be for that."""
+FAR_TABLE = {"center": (0.60, -0.19), "size": (0.50, 0.63)}
 PATIENCE_MS = 60_000
 PATIENCE_S = 120.0
 HANDS_S = 1.0
@@ -100,6 +102,8 @@ def draw(seed: int) -> Situation:
         case "missing":
             do = [_at_once(Intervention(act=Act.STEAL, object=PART))]
         case "far":
+            table = scene.table.model_copy(update=FAR_TABLE)
+            scene = scene.model_copy(update={"table": table})
             do = [_at_once(Intervention(act=Act.MOVE, object=PART, to=OUT_OF_REACH))]
         case "in the way":
             do = [_during(1, rng.random() / 2, Intervention(act=Act.BLOCK))]
