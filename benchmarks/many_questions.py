@@ -78,6 +78,18 @@ class Seen:
     claimed_s: dict[str, float] = field(default_factory=dict)
     ends: dict[str, tuple[str, float]] = field(default_factory=dict)
 
+    def needed_until_s(self, call: Call) -> float:
+        """Until when a helper was needed after a call; infinity if they still are."""
+        others = [
+            each.put_s
+            for each in self.calls
+            if each.dialogue == call.dialogue
+            and each.helper != call.helper
+            and each.put_s >= call.put_s
+        ]
+        _, ended_s = self.ends.get(call.dialogue, ("", math.inf))
+        return min([self.claimed_s.get(call.dialogue, math.inf), ended_s, *others])
+
 
 class SimulatedHelper:
     """Somebody at a console who answers what is put to them, one thing after the other."""
@@ -259,7 +271,8 @@ def _pushed_after(
 ) -> tuple[list[float], int]:
     """How long each call took to its helper's device, and how many never came there.
 
-    Whoever is on the question before the push was sent needs none, and gets none.
+    Whoever is on the question before the push was sent needs none, and gets none; nor does who is
+    asked no longer by then, as somebody idle is.
     """
     after_s, missed, now_s = [], 0, time.time()
     for call in seen.calls:
@@ -268,7 +281,8 @@ def _pushed_after(
         ]
         if at_s:
             after_s.append(min(at_s) - call.put_s)
-        elif min(seen.claimed_s.get(call.dialogue, now_s), now_s) > call.put_s + MOST_S:
+        elif (until_s := min(seen.needed_until_s(call), now_s)) > call.put_s + MOST_S:
+            print(f"no push to {call.helper}, who was asked for {until_s - call.put_s:.1f} s")
             missed += 1
     return after_s, missed
 

@@ -88,11 +88,16 @@ class Conversation:
 
     @property
     def denied(self) -> frozenset[Expectation]:
-        """What the first look may contradict: what the issue says not to be so.
+        """What the issue says not to be so."""
+        return self._script.denied
+
+    @property
+    def contradictable(self) -> frozenset[Expectation]:
+        """What of that the first look may contradict.
 
         A robot that was contradicted before, and met the same issue again, believes the issue.
         """
-        return self._script.denied if self._outlook.unchanged == 1 else frozenset()
+        return self.denied if self._outlook.unchanged == 1 else frozenset()
 
     @property
     def looks_at_a_word(self) -> bool:
@@ -301,7 +306,9 @@ class Conversation:
         helped = change.by_a_person
         led_round = change is Change.LED_ROUND
         resolution = wanted if led_round else self._resolution_for(wanted, helped)
-        failed = not helped or self._outlook.helped_out
+        # Where nobody can say whether anybody has helped it is no failed attempt the first time.
+        untold = change is Change.UNKNOWN and self._outlook.times == 1
+        failed = not (helped or untold) or self._outlook.helped_out
         match resolution:
             case Resolution.ROBOT_RETRY if failed:
                 then = self._next_after_failure()

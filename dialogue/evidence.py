@@ -8,8 +8,15 @@ The robot asks, and looks at once (the first look). A later look puts the issue 
 A state that was already so when the question was put tells nothing: a part that the robot has only
 failed to hold is within its reach all the time. What the issue itself says not to be so (a missing
 part within reach, a seen obstruction gone) is new even if it is so at the first look; but then the
-robot may well have been wrong before, so that nobody is thanked for it. What was felt is never put
-right by a camera: it takes a person's word and a look.
+robot may well have been wrong before, so that nobody is thanked for it who has not promised it
+before that look. What a basket or a battery feels, and who stands near, it is not wrong about. What
+was felt in its way is never put right by a camera: it takes a person's word and a look.
+
+People may be quicker than the first look. What the robot knew before it is compared with as well:
+whether it saw, as it drew back, that what its fingers had lost was not where it is at the first
+look; and, where help was promised before that look, what the issue says not to be so, and where the
+object was last seen if the robot had not begun to handle it. Where it knows none of these it cannot
+say whether anybody has helped.
 
 A camera may come to see again by itself, what it took for something in the way may be gone by
 itself, and a robot may find out by itself where it is, so that nobody is thanked for any of these
@@ -25,7 +32,7 @@ is a look that sees no more than the first one did.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from mend.dialogue.script import Expectation
@@ -86,11 +93,17 @@ class LookOutcome:
     """What one look saw: what is so of what matters, and where the object is (None: unseen).
 
     `blind`: the camera showed nothing of the table, so that the look tells of nothing there.
+    `brought`: whether the object was seen before not to be where it is now; None if that was not.
     """
 
     fulfilled: frozenset[Expectation]
     position: Point | None
     blind: bool = False
+    brought: bool | None = None
+
+
+NOWHERE = LookOutcome(frozenset(), None)
+"""What sees the object nowhere, or not where it matters, and nothing of what does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +147,30 @@ def change_since(looks: Sequence[LookOutcome], now: LookOutcome) -> Change:
     return next(iter([*made, *changes]), Change.UNKNOWN)
 
 
+def known_when_raised(
+    expected: Expectation, denied: frozenset[Expectation], untouched_at: Point | None
+) -> LookOutcome | None:
+    """What an issue tells of what was `expected` when it was raised; None if nothing.
+
+    `untouched_at`: where the object was seen then, if the robot had not begun to handle it.
+    """
+    if expected in denied:
+        return LookOutcome(frozenset(), None, blind=expected is Expectation.VIEW_CLEAR)
+    return None if untouched_at is None else LookOutcome(frozenset(), untouched_at)
+
+
+def known_before(first: LookOutcome) -> LookOutcome | None:
+    """What was known before the first look of where the object then was; None if nothing."""
+    if first.brought is None:
+        return None
+    return NOWHERE if first.brought else replace(first, brought=None)
+
+
+def brought_before(watched: Sequence[Expectation], first: LookOutcome) -> PutRight | None:
+    """What is right at the first look, of an object that was seen not to be there before it."""
+    return put_right(watched, NOWHERE, first) if first.brought else None
+
+
 def put_right(
     watched: Sequence[Expectation], first: LookOutcome, now: LookOutcome
 ) -> PutRight | None:
@@ -155,12 +192,15 @@ def put_right(
 def contradiction(
     watched: Sequence[Expectation], denied: frozenset[Expectation], first: LookOutcome
 ) -> PutRight | None:
-    """What the first look saw that the issue itself denies: the robot may have been wrong."""
+    """What the first look saw that the issue itself denies.
+
+    The robot may have been wrong, but for what it felt: that somebody has changed since.
+    """
     if Expectation.LED_ROUND in first.fulfilled.intersection(watched):
         return PutRight(Expectation.LED_ROUND, Change.LED_ROUND)
     for each in watched:
         if each in denied & first.fulfilled:
-            return PutRight(each, Change.NONE)
+            return PutRight(each, _FELT.get(each, Change.NONE))
     return None
 
 

@@ -6,12 +6,15 @@ from mend.dialogue.script import Expectation, Help, ScriptWithParameters
 from mend.tasks.resolution import Resolution
 
 
-def lost_part_script(what_happened: str, failed: str) -> ScriptWithParameters[Patience]:
+def lost_part_script(
+    what_happened: str, failed: str, denied: frozenset[Expectation] = frozenset()
+) -> ScriptWithParameters[Patience]:
     """The script for an object that the robot has not got.
 
     The paper's robot asks "Shall I try again?", and whoever says yes is then told to put it back.
     Here that is what is asked for.
-    `what_happened` is its first sentence, `failed` the one once it has happened too often.
+    `what_happened` is its first sentence, `failed` the one once it has happened too often, and
+    `denied` what the issue says not to be so.
     Source: Blankenburg et al. 2020, Section 3.3.
     """
     return offer_script(
@@ -32,6 +35,7 @@ def lost_part_script(what_happened: str, failed: str) -> ScriptWithParameters[Pa
                 Expectation.AT_PLACE: Resolution.HUMAN_FINISH,
                 Expectation.IN_REACH: Resolution.ROBOT_RETRY,
             },
+            denied=denied,
             may_be_mistaken=True,
         )
     )

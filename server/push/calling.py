@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterable
 from typing import Literal, Protocol
-from uuid import UUID, uuid4
+from uuid import UUID, uuid5
 
 from mend.errors import RefusalError
 from mend.server.background import Endless
@@ -60,6 +60,8 @@ class Runs(Protocol):
 
     async def run_summary(self, run: UUID) -> RunSummary: ...
 
+    def lost_robots(self) -> Iterable[tuple[UUID, str]]: ...
+
 
 class Letters(Protocol):
     """Where letters are put; `mend.server.push.outbox.Outbox`."""
@@ -101,6 +103,10 @@ class Calling:
             if _is_asked(view) and prompt is not None:
                 devices = self._subscriptions.of_helper(prompt.to)
                 self._called[view.dialogue] = {each.id for each in devices}
+        everybody = {each.id for each in self._subscriptions.of_helper(None)}
+        for run, robot in self._runs.lost_robots():
+            self._lost[run, robot] = call = _call_about(run, robot)
+            self._called[call] = set(everybody)
 
     async def follow(self) -> None:
         """Take every event as it is committed, until the journal closes."""
@@ -187,7 +193,7 @@ class Calling:
             return
         await self._subscriptions.let_go()
         devices = self._subscriptions.of_helper(None)
-        call = self._lost[run, robot] = uuid4()
+        call = self._lost[run, robot] = _call_about(run, robot)
         self._call(devices, RobotLostMessage(dialogue=call, run=run, robot=robot), LOST_S)
         self._called[call] = {each.id for each in devices}
 
@@ -224,6 +230,11 @@ class Calling:
 def _is_asked(view: DialogueView) -> bool:
     """Whether helpers are asked, and nobody is on it."""
     return view.awaiting == "answer" and not view.scripted and view.claimed_by is None
+
+
+def _call_about(run: UUID, robot: str) -> UUID:
+    """What a call about a lost robot goes by, the same after a restart of the service."""
+    return uuid5(run, robot)
 
 
 def _call(view: DialogueView, prompt: PromptView, *, urgent: bool) -> CallMessage:

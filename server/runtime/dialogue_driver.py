@@ -148,12 +148,13 @@ class DialogueDriver:
         first, make = self._looks.first_look(dialogue, proxy, fulfilled), self._make(dialogue)
         if dialogue.first_look is not None and first.blind:
             return
-        noted = make.first_look(first) if dialogue.first_look is None else make.looked_anew(first)
-        denied = self._looks.contradicted(dialogue, first) if dialogue.open_ask else None
-        if denied is None:
+        anew = dialogue.first_look is not None
+        noted = make.looked_anew(first) if anew else make.first_look(first)
+        right = self._looks.right_at_first(dialogue, first) if dialogue.open_ask else None
+        if right is None:
             await self._context.commit([noted])
         else:
-            call = f"put_right:{denied.seen}:{denied.change}"
+            call = f"put_right:{right.seen}:{right.change}"
             await self._converse(dialogue, call, [noted], proxy)
 
     async def _watched(self, dialogue: DialogueState, proxy: RobotProxy, fulfilled: bool) -> None:
@@ -247,6 +248,18 @@ class DialogueDriver:
         """The event that ends a dialogue because its run, robot or alternative ends."""
         return self._make(dialogue).aborted()
 
+    def too_late(self, dialogue: DialogueState, proxy: RobotProxy) -> list[ev.Event]:
+        """The events that end a question to which nobody can say yes any more.
+
+        A script's answer counts that was due before: the clock leaps from report to report.
+        """
+        ask, scripted = dialogue.open_ask, self._scripted(dialogue)
+        if ask is None or scripted is None or not has_come(self._context.clock, scripted[1]):
+            return [self.abort(dialogue)]
+        events = self._answered(dialogue, ask, [scripted[0]], "script", proxy)
+        closed = any(isinstance(each, ev.DialogueClosed) for each in events)
+        return events if closed else [*events, self.abort(dialogue)]
+
     def remark(self, dialogue: DialogueState, clause: str) -> ev.Prompt:
         """The event that tells whoever was asked why nobody has to answer any more."""
         return self._make(dialogue).say(Remark(sentence(spoken(clause))))
@@ -280,6 +293,20 @@ class DialogueDriver:
         author: ev.Author | None = None,
     ) -> ev.Answered:
         """Answer the open question, and each that follows from that; returns the last answer."""
+        events = self._answered(dialogue, ask, answers, helper, proxy, author)
+        committed = await self._context.commit(events)
+        return [each for each in committed if isinstance(each, ev.Answered)][-1]
+
+    def _answered(
+        self,
+        dialogue: DialogueState,
+        ask: ev.Prompt,
+        answers: Sequence[Answer],
+        helper: str,
+        proxy: RobotProxy,
+        author: ev.Author | None = None,
+    ) -> list[ev.Event]:
+        """The events of answers, and of what is said to the last of them."""
         make = self._make(dialogue)
         events: list[ev.Event] = []
         if dialogue.claim is not None and dialogue.claim.helper != helper:
@@ -288,8 +315,7 @@ class DialogueDriver:
             said = self._said_after(dialogue, answers[:number], proxy, helper)
             events += [make.answered(ask, answer, helper, author), *said]
             ask = next((each for each in said if isinstance(each, ev.Prompt)), ask)
-        committed = await self._context.commit(events)
-        return [each for each in committed if isinstance(each, ev.Answered)][-1]
+        return events
 
     async def _nobody_answered(
         self, dialogue: DialogueState, ask: ev.Prompt, proxy: RobotProxy

@@ -130,6 +130,7 @@ class DialogueEvents:
             fulfilled=sorted(look.fulfilled),
             position=look.position,
             blind=look.blind,
+            brought=look.brought,
         )
 
     def looked_anew(self, look: LookOutcome) -> ev.LookedAnew:
@@ -284,4 +285,6 @@ def _why_put_back(close: Close) -> str:
         return "it has failed after help too often"
     if close.helped:
         return "somebody has helped" if close.reason is CloseReason.RESOLVED else "it was put right"
+    if not close.failed:
+        return "nobody can say whether anybody has helped"
     return "it has failed"

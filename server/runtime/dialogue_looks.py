@@ -8,9 +8,12 @@ from mend.dialogue.evidence import (
     LookOutcome,
     Point,
     PutRight,
+    brought_before,
     change_since,
     contradiction,
     has_moved,
+    known_before,
+    known_when_raised,
     put_right,
 )
 from mend.dialogue.script import EXPECTED, Expectation, Help
@@ -240,15 +243,18 @@ class DialogueLooks:
         self, dialogue: DialogueState, proxy: RobotProxy, fulfilled: bool
     ) -> LookOutcome:
         """What the first look saw: everything later is compared with it."""
-        first = self._seen(dialogue, proxy, self._expected_first(dialogue) if fulfilled else None)
+        seen = self._seen(dialogue, proxy, self._expected_first(dialogue) if fulfilled else None)
+        first = replace(seen, brought=proxy.brought)
         if proxy.held is None or proxy.held != dialogue.raised.object:
             return first
         return replace(first, fulfilled=first.fulfilled | {Expectation.IN_GRIPPER})
 
-    def contradicted(self, dialogue: DialogueState, first: LookOutcome) -> PutRight | None:
-        """What the first look saw of that which the issue itself says not to be so."""
+    def right_at_first(self, dialogue: DialogueState, first: LookOutcome) -> PutRight | None:
+        """What the first look saw of that which is known not to have been so before it."""
         conversation = dialogue.conversation
-        return contradiction(conversation.watched_for, conversation.denied, first)
+        watched = conversation.watched_for
+        brought = brought_before(watched, first)
+        return brought or contradiction(watched, conversation.contradictable, first)
 
     def put_right(
         self, dialogue: DialogueState, proxy: RobotProxy, fulfilled: bool
@@ -279,7 +285,19 @@ class DialogueLooks:
             held_before = base is not None and Expectation.IN_GRIPPER in base.fulfilled
             return Change.NONE if held_before else Change.HANDED_OVER
         now = self._seen(dialogue, proxy, EXPECTED[helped_with])
-        return change_since(self._earlier(dialogue), now)
+        known = self._known_before(dialogue, EXPECTED[helped_with])
+        change = change_since([*known, *self._earlier(dialogue)], now)
+        untold = change is Change.NONE and dialogue.promised_first and not known
+        return Change.UNKNOWN if untold else change
+
+    def _known_before(self, dialogue: DialogueState, expected: Expectation) -> list[LookOutcome]:
+        """What was known before the first look, when people may have begun to help already."""
+        first, raised = dialogue.first_look, dialogue.raised
+        known = [] if first is None else [known_before(first.outcome)]
+        if dialogue.promised_first:
+            untouched_at = None if raised.step else raised.last_seen
+            known.append(known_when_raised(expected, dialogue.conversation.denied, untouched_at))
+        return [each for each in known if each is not None]
 
     def _base(self, dialogue: DialogueState) -> LookOutcome | None:
         """What a look is compared with to see whether anything is right that was not."""
@@ -290,7 +308,7 @@ class DialogueLooks:
         first, later = dialogue.first_look, dialogue.looked_anew
         looks = []
         if first is not None and not (first.blind and later is not None):
-            looks.append(LookOutcome(frozenset(first.fulfilled), first.position, blind=first.blind))
+            looks.append(first.outcome)
         if later is not None:
             looks.append(LookOutcome(frozenset(later.fulfilled), later.position))
         return looks

@@ -61,6 +61,8 @@ class DialogueState:
     asked_for_s: float | None = None
     """How long the open question waited for an answer when it was put."""
     first_look: ev.FirstLook | None = None
+    promised_first: bool = False
+    """Whether the help that is awaited was promised before the first look."""
     looked_anew: ev.LookedAnew | None = None
     """The latest look that later ones are compared with besides the first."""
     extensions: dict[UUID, int] = field(default_factory=dict)
@@ -166,6 +168,7 @@ class DialogueState:
     @_apply.register
     def _(self, event: ev.FirstLook) -> None:
         self.first_look = event
+        self.promised_first = self.awaiting is not None
 
     @_apply.register
     def _(self, event: ev.LookedAnew) -> None:

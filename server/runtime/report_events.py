@@ -93,7 +93,7 @@ class ReportEvents:
         if execution is None:
             return []
         return [
-            *self._too_late_for_help(execution.leaf, body.phase),
+            *self._too_late_for_help(proxy, execution.leaf, body.phase),
             ev.StepStarted(
                 **self._context.stamp(),
                 **self.node(execution.leaf),
@@ -106,17 +106,12 @@ class ReportEvents:
             ),
         ]
 
-    def _too_late_for_help(self, leaf: int, phase: str | None) -> list[ev.Event]:
-        """Nobody can help to place what the robot lets go of: a question about that lapses.
-
-        Not where a script answers: as the clock leaps from report to report, its answer may have
-        been due before this one.
-        """
-        state = self._context.state
-        asked = state.dialogue_of(leaf)
-        if asked is None or asked.raised.interrupts or phase != Phase.RELEASE or not state.live:
+    def _too_late_for_help(self, proxy: RobotProxy, leaf: int, phase: str | None) -> list[ev.Event]:
+        """Nobody can help to place what the robot lets go of: a question about that lapses."""
+        asked = self._context.state.dialogue_of(leaf)
+        if asked is None or asked.raised.interrupts or phase != Phase.RELEASE:
             return []
-        return [self._dialogues.abort(asked)]
+        return self._dialogues.too_late(asked, proxy)
 
     def _issue_detected(
         self, proxy: RobotProxy, body: IssueDetected, pictures: dict[UUID, bytes]

@@ -115,6 +115,8 @@ class RobotProxy:
     """When (the run's clock) and where it last saw each thing that it ever saw."""
     seen_at: float = -math.inf
     """When it last saw anything (the run's clock)."""
+    brought: bool | None = None
+    """Whether what its fingers had lost was seen elsewhere than at the last look, before that."""
     gripper: Point = (0.0, 0.0, 0.0)
     held: str | None = None
     looked_at: float | None = None
@@ -297,7 +299,7 @@ class RobotProxy:
             self.last_seen |= {name: (time, each) for name, each in self.seen.items()}
         self.held, self.felt = looked.held, looked.felt
         self.jpeg, self.detection = _shown_at(looked), looked.detection
-        self.led_round = looked.led_round
+        self.led_round, self.brought = looked.led_round, looked.brought
         self.there = frozenset(looked.there)
         self.gripper = (
             *self.frame.to_scene(looked.gripper.x, looked.gripper.y),

@@ -56,6 +56,10 @@ class RunLookup:
                 return summary_of_indexed(indexed)
         return self.summary(await self._states.find(run))
 
+    def lost_robots(self) -> list[tuple[UUID, str]]:
+        """The robots that are gone, with their runs, where no script answers for people."""
+        return self._states.lost_robots()
+
     async def run_json(self, run: UUID) -> list[bytes]:
         """What `run` returns, in JSON, in pieces."""
         # Each passes the loop on after a piece: all at once would make others wait for all of them.

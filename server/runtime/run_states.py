@@ -118,6 +118,11 @@ class RunStates:
         """The states of all runs that go on."""
         return list(self._going_on.values())
 
+    def lost_robots(self) -> list[tuple[UUID, str]]:
+        """The robots that are gone, with their runs, where no script answers for people."""
+        states = (state for state in self._going_on.values() if state.live)
+        return [(state.id, robot) for state in states for robot in sorted(state.lost)]
+
     def open_dialogues(self) -> Iterator[DialogueState]:
         return (each for state in self._going_on.values() for each in state.open_dialogues)
 

@@ -312,6 +312,10 @@ class Runtime:
         """One run without its nodes. Raises `NotFoundError` or `UnreadableError`."""
         return await self._lookup.run_summary(run)
 
+    def lost_robots(self) -> list[tuple[UUID, str]]:
+        """The robots that are gone, with their runs, where no script answers for people."""
+        return self._lookup.lost_robots()
+
     async def run_json(self, run: UUID) -> list[bytes]:
         """What `run` returns, in JSON, in pieces."""
         return await self._lookup.run_json(run)

@@ -10,7 +10,7 @@ from mend.robots.link.messages import Detection
 from mend.server.runtime.dialogue_state import DialogueState
 from mend.server.runtime.robot_proxy import RobotProxy
 
-_SEEN_BY_HEAD = (Help.PLACE, Help.PUT_BACK, Help.CLEAR_WAY)
+SEEN_BY_HEAD = (Help.PLACE, Help.PUT_BACK, Help.CLEAR_WAY)
 """Help of which a robot whose head camera shows nothing cannot say that there was none."""
 _PUT_SOMEWHERE = (Help.PLACE, Help.PUT_BACK)
 """Help by which an object comes to be somewhere."""
@@ -44,7 +44,7 @@ def unseen_help(dialogue: DialogueState, proxy: RobotProxy, help_: Help) -> Unse
     """What a robot's last look saw instead of help."""
     return Unseen(
         felt=None if proxy.felt is None else Felt(proxy.felt),
-        blind=proxy.blind if help_ in _SEEN_BY_HEAD else None,
+        blind=proxy.blind if help_ in SEEN_BY_HEAD else None,
         sight=_sight(dialogue, proxy) if help_ in _PUT_SOMEWHERE else None,
         jpeg=None if proxy.jpeg is None else (uuid4(), proxy.jpeg),
         detection=proxy.detection,

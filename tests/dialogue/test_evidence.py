@@ -11,9 +11,12 @@ from mend.dialogue.evidence import (
     Change,
     LookOutcome,
     PutRight,
+    brought_before,
     change_between,
     change_since,
     contradiction,
+    known_before,
+    known_when_raised,
     put_right,
 )
 from mend.dialogue.script import Expectation
@@ -85,6 +88,33 @@ def test_a_first_look_that_contradicts_the_issue_thanks_nobody() -> None:
     )
     assert contradiction(LOST, frozenset(), first) is None
     assert not Change.NONE.by_a_person
+
+
+def test_what_a_robot_feels_it_has_not_been_wrong_about() -> None:
+    loaded = LookOutcome(frozenset({Expectation.LOADED}), None)
+    found = contradiction([Expectation.LOADED], frozenset({Expectation.LOADED}), loaded)
+    assert found == PutRight(Expectation.LOADED, Change.LOADED)
+
+
+def test_what_an_issue_denies_was_not_so_when_it_was_raised() -> None:
+    denied = frozenset({Expectation.WAY_CLEAR})
+    then = known_when_raised(Expectation.WAY_CLEAR, denied, None)
+    assert change_between(then, look(Expectation.WAY_CLEAR)) is Change.CLEARED
+    assert known_when_raised(Expectation.IN_REACH, denied, None) is None
+    lay = known_when_raised(Expectation.IN_REACH, denied, THERE)
+    assert change_between(lay, look(Expectation.IN_REACH)) is Change.MOVED
+    dark = known_when_raised(Expectation.VIEW_CLEAR, frozenset({Expectation.VIEW_CLEAR}), HERE)
+    assert change_between(dark, look(Expectation.VIEW_CLEAR)) is Change.CLEARED
+
+
+def test_what_was_seen_elsewhere_before_the_first_look_is_put_right_and_thanked_for() -> None:
+    first = look(Expectation.IN_REACH)
+    found = PutRight(Expectation.IN_REACH, Change.APPEARED)
+    assert brought_before(LOST, replace(first, brought=True)) == found
+    assert brought_before(LOST, replace(look(), brought=True)) is None
+    assert brought_before(LOST, replace(first, brought=False)) is None
+    assert brought_before(LOST, first) is None
+    assert known_before(first) is None
 
 
 def test_where_nobody_looked_before_nothing_can_have_changed() -> None:

@@ -27,7 +27,8 @@ def untold(sentences: Sequence[str], files: Iterable[str] = ("clauses",)) -> lis
 
 def pattern_of(key: str) -> str:
     pieces = re.split(r"\{(\w+)\}", key)
-    fields = (".+" if name == "rest" else "[^,;:?!]{1,80}?" for name in pieces[1::2])
+    any_clause = {"rest": ".+", "deed": ".+?"}
+    fields = (any_clause.get(name, "[^,;:?!]{1,80}?") for name in pieces[1::2])
     escaped = map(re.escape, pieces[::2])
     return next(escaped) + "".join(
         field + text for field, text in zip(fields, escaped, strict=True)

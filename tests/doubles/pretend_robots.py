@@ -45,6 +45,9 @@ FIRST_JPEG, SECOND_JPEG = b"\xff\xd8\xff first \xff\xd9", b"\xff\xd8\xff second 
 PARTS = {f"part_{number}": 0.01 * number for number in range(100)}
 """What there is on the table, with its y."""
 
+RELEASES = 7
+"""The step in which it lets go."""
+
 
 class Sink(Protocol):
     async def robot_connected(self, robot: str, hello: Hello) -> None: ...
@@ -66,7 +69,8 @@ class PretendRobot:
     stolen, so often; with `in_reach` it is only elsewhere on the table then. `hidden_at_place`:
     what no look can judge. `returns`: once such an object is placed, all that was stolen is back at
     its place. `slow`: it is still at its first start until it is interrupted. `wrong`: what it
-    believes to have missed or dropped stands within its reach all the time. `held` is between its
+    believes to have missed or dropped stands within its reach all the time, and it says of that
+    whether it was `brought` there. `held` is between its
     fingers all the time. Once `blinded_by` is placed its head camera is covered, until somebody
     clears its view.
     """
@@ -95,6 +99,7 @@ class PretendRobot:
     obstructed: bool = False
     felt: bool = False
     wrong: bool = False
+    brought: bool | None = False
     deaf: bool = False
     stubborn: bool = False
     patient: bool = False
@@ -263,7 +268,13 @@ class PretendRobots:
                 continue
             robot.time += 1.0
             await self.report(
-                robot, StepStarted(execution=start.execution, step=step, name=f"step {step}")
+                robot,
+                StepStarted(
+                    execution=start.execution,
+                    step=step,
+                    name=f"step {step}",
+                    phase="release" if step == RELEASES else None,
+                ),
             )
             if due:
                 faults.remove(due[0])
@@ -346,6 +357,7 @@ class PretendRobots:
                 gone=[each for each in look.finished if self._verdict(robot, each) == "gone"],
                 held=robot.held,
                 blind="the camera is covered" if robot.blind else None,
+                brought=robot.brought if robot.wrong else None,
                 jpeg=base64.b64encode(SECOND_JPEG).decode()
                 if robot.films and not fulfilled
                 else None,

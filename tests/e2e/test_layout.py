@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from console_in_browser import OpenPage, settle
-from console_situations import ask
+from console_situations import ask, run_in_building
 from playwright.async_api import Page, expect
 from playwright.async_api import TimeoutError as PlaywrightTimeout
 
@@ -15,6 +15,7 @@ pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 OVERLAPS = (Path(__file__).parent / "overlaps.js").read_text().strip()
 WIDTHS = (360, 768, 1440)
+ZOOMED_PHONE = 195
 # Nothing is under a bar that sticks to an edge by the chance of where the page is scrolled to.
 TALL = 4800
 
@@ -60,3 +61,21 @@ async def test_names_in_the_scene_do_not_overlap(service: Service, open_page: Op
             await names.click()
         await expect(page.locator(".scene-name:not([hidden])")).to_have_count(5)
         assert await overlaps(page) == [], width
+
+
+async def test_a_building_and_home_are_as_wide_as_a_phone_at_200_percent(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await run_in_building(service, open_page)
+    await page.set_viewport_size({"width": ZOOMED_PHONE, "height": 422})
+    await page.get_by_role("tab", name="Building").click()
+    await expect(page.get_by_role("list", name="Robots")).to_be_visible()
+    assert await page.evaluate("document.scrollingElement.scrollWidth") == ZOOMED_PHONE
+    await page.goto("/")
+    await page.get_by_text("What else goes on").click()
+    name = page.get_by_role("region", name="Robots").get_by_role("link", name="ROBOT1")
+    # A word is on one line, and not a letter on each.
+    height_px = await name.evaluate("each => each.getBoundingClientRect().height")
+    line_px = await name.evaluate("each => parseFloat(getComputedStyle(each).lineHeight)")
+    assert height_px < 2 * line_px
+    assert await page.evaluate("document.scrollingElement.scrollWidth") == ZOOMED_PHONE

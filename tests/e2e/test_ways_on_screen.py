@@ -3,8 +3,6 @@
 The player knows nothing but what stands on the screen: the headline, the buttons, what each does.
 """
 
-import re
-from collections.abc import Callable
 from typing import Any
 from uuid import UUID
 
@@ -13,16 +11,15 @@ from console_in_browser import Stage
 from played_dialogues import DETECTION
 from playwright.async_api import Page, expect
 from sampled import sample
+from ways_on_screen import MOST_WORDS, came_as_said, effect_of, labels_on, of, read_before
 
 from mend.dialogue.outlook import Outlook
 from mend.dialogue.registry import load_scripts
 from mend.dialogue.script import CloseReason
 from mend.server.journal import events as ev
-from mend.tasks.resolution import Resolution
 
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
-MOST_WORDS = 25
 ARMED_AFTER_MS = 550
 HELD_MS = 3_100
 
@@ -43,47 +40,6 @@ SITUATIONS = {
     "felt": {"detection": DETECTION.model_copy(update={"felt": True})},
     "seen nowhere": {"detection": DETECTION.model_copy(update={"center": None})},
 }
-
-AS_SEEN = """(card) => {
-  const texts = document.createTreeWalker(card, NodeFilter.SHOW_TEXT);
-  const seen = [];
-  while (texts.nextNode()) {
-    const { parentElement, data } = texts.currentNode;
-    if (parentElement.closest(".unseen") === null) seen.push(data);
-  }
-  return seen.join(" ");
-}"""
-"""What stands on a card in its order, without what is only for those who have it read to them."""
-
-Events = list[ev.Event]
-ENDS: dict[str, Callable[[Events], bool]] = {
-    r"counts .* as left out by you": lambda events: of(events, ev.NodeLeftOut)[0].helper == "anna",
-    r"^Attempt (\d) of 3 has failed": lambda events: of(events, ev.NodeReset)[0].failed_attempt,
-    r"both of us have done it": lambda events: resolved(events) == (Resolution.COLLAB_FINISH, True),
-    r"slowly by myself": lambda events: resolved(events) == (Resolution.ROBOT_FINISH, False),
-    r"^I take your word": lambda events: resolved(events) == (Resolution.ROBOT_FINISH, True),
-    r"^You put .* at its place; it is done once": lambda events: (
-        resolved(events) == (Resolution.HUMAN_FINISH, True)
-        and of(events, ev.NodeDone)[0].by == "human"
-    ),
-    r"^You .*I try again": lambda events: resolved(events) == (Resolution.ROBOT_RETRY, True),
-    r"^You .*(I go on|and go on|I take it|I pick it up|I place it|I ride on)": lambda events: (
-        resolved(events) == (Resolution.ROBOT_FINISH, True)
-    ),
-    r"^I look whether what I see agrees": lambda events: (
-        resolved(events) == (Resolution.ROBOT_FINISH, True)
-    ),
-}
-"""What is so in the journal where it came as a button said, by words of what it said."""
-
-
-def of(events: Events, kind: type[Any]) -> list[Any]:
-    return [each for each in events if isinstance(each, kind)]
-
-
-def resolved(events: Events) -> tuple[Resolution, bool]:
-    [end] = of(events, ev.Resolved)
-    return end.resolution, end.helped
 
 
 @pytest.mark.drawn(3)
@@ -131,35 +87,9 @@ async def play(stage: Stage, page: Page, kind: str, situation: str, number: int)
     await finish(stage, dialogue)
     await expect(page.get_by_text("No robot asks anything")).to_be_visible()
     events = await stage.runs.came_of(dialogue)
-    came = [so for words, so in ENDS.items() if re.search(words, said)]
-    assert came, f"nobody knows what {said!r} means"
-    assert all(so(events) for so in came), (about, said)
+    assert came_as_said(said, events), (about, said)
     assert of(events, ev.DialogueClosed)[0].reason in (CloseReason.RESOLVED, CloseReason.LEFT_OUT)
     return True
-
-
-async def labels_on(page: Page) -> list[str]:
-    keys = re.compile(r"\s*\d$")
-    return [keys.sub("", each) for each in await page.locator(".way").all_inner_texts()]
-
-
-async def read_before(page: Page, last: str) -> list[str]:
-    """All words of the card from its top to that button, in the order in which they stand."""
-    await expect(page.locator("article.question > header + h2 + .question-answers")).to_be_visible()
-    card = await page.locator("article.question").evaluate(AS_SEEN)
-    headline = await page.locator(".question-text").inner_text()
-    top = card[: card.index(headline) + len(headline)]
-    below = card[len(top) :]
-    before = top + below[: below.index(last) + len(last)]
-    return [each for each in re.findall(r"[\w:’']+", before) if not re.fullmatch(r"\d", each)]
-
-
-async def effect_of(page: Page, label: str) -> str:
-    """What the page says that a button does."""
-    term = page.locator(".way-effects > div").filter(
-        has=page.locator("dt", has_text=re.compile(f"^{re.escape(label)}$"))
-    )
-    return await term.locator("dd").inner_text()
 
 
 async def press(page: Page, label: str) -> None:

@@ -1,6 +1,7 @@
 """Where the robot does not wait for help, nobody is asked any more once it has let go."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from awaited_events import events_until
@@ -12,10 +13,16 @@ from mend.server.settings import Settings
 
 
 @pytest.mark.slow(5)
-async def test_a_question_lapses_before_the_gripper_opens(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "how", [{"speed": 20.0}, {"speed": "max", "answers": "none"}], ids=["live", "scripted"]
+)
+async def test_a_question_lapses_before_the_gripper_opens(
+    tmp_path: Path, how: dict[str, Any]
+) -> None:
     settings = Settings(port=0, data_dir=tmp_path, speech_voice="none")
     async with open_service(settings) as service:
-        await service.runtime.start_run(RunRequest(tree="eket", world="tabletop", speed=20.0))
+        request = RunRequest.model_validate({"tree": "eket", "world": "tabletop", **how})
+        await service.runtime.start_run(request)
         events = await events_until(
             service, lambda all_: any(isinstance(each, ev.DialogueClosed) for each in all_)
         )

@@ -2,8 +2,9 @@ import { afterEach, beforeEach, describe, expect, it } from "vitest";
 import { problems } from "../scripts/check_words.mjs";
 import sentences from "../texts/de/sentences.json";
 import clauses from "../texts/de/clauses.json";
+import refusals from "../texts/de/refusals.json";
 import { languageOf } from "../src/words/language";
-import { takeSentences, learn, said, translated, whyNotDone } from "../src/words/said";
+import { takeClauses, takeSentences, learn, said, translated, whyNotDone } from "../src/words/said";
 import { Refusal } from "../src/wire/rest";
 import { parts, t, tn } from "../src/words/words";
 
@@ -47,6 +48,19 @@ describe("what the service says", () => {
       { key: "Will you put it back on the table?", args: {} },
     ],
   };
+
+  it("is said of what people did in vain, and of mistakes in files, each part of it", () => {
+    takeClauses(refusals);
+    expect(said("takes the red leg away: in vain, the run is paused")).toBe(
+      "nimmt „red leg“ weg: vergeblich, der Lauf ist angehalten",
+    );
+    expect(said("'objects.cup.pose.x' must be a number (in metres), but it is a list")).toBe(
+      "„objects.cup.pose.x“ muss eine Zahl (in Metern) sein, ist aber eine Liste",
+    );
+    expect(said("this is a scene, and not a task tree: a task tree names it as its 'scene'")).toBe(
+      "das ist eine Szene, nicht ein Aufgabenbaum: ein Aufgabenbaum nennt sie als „scene“",
+    );
+  });
 
   it("is said of what is refused while somebody answers", () => {
     expect(said("anna is on this dialogue for 12 s more; 'take_over' takes it from them")).toBe(

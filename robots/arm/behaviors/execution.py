@@ -7,6 +7,7 @@ from mend.robots.arm.behaviors.behavior import Move
 from mend.robots.arm.behaviors.confirmation import look_at_outcome
 from mend.robots.arm.behaviors.contact import Try
 from mend.robots.arm.behaviors.covering import CoveredResultGone
+from mend.robots.arm.behaviors.drawing_back import DrawnBack
 from mend.robots.arm.behaviors.elsewhere import SeenElsewhere
 from mend.robots.arm.behaviors.preparation import prepare
 from mend.robots.arm.behaviors.progress import ArmProgress
@@ -23,6 +24,7 @@ from mend.robots.execution.phase import Phase
 from mend.robots.execution.routine import Routine
 from mend.robots.execution.watch import Interruption
 from mend.robots.link.messages import Location, Resume, Resumed
+from mend.robots.vision.head import HeadSighting
 from mend.robots.vision.obstruction import Obstruction
 from mend.robots.vision.presence import Presence
 
@@ -36,6 +38,7 @@ class ArmExecution(Execution[ArmProgress]):
         self._arm, self._perception = work.arm, work.perception
         self._watch = ArmWatch(work, monitors)
         self._steps = StepWalk(work, self._watch)
+        self._drawn_back: DrawnBack | None = None
 
     @property
     def fraction(self) -> float:
@@ -82,7 +85,15 @@ class ArmExecution(Execution[ArmProgress]):
         """The object and its place, if it was placed there and that could not be seen."""
         return self._work.unconfirmed
 
+    def brought_to(self, now: HeadSighting) -> bool | None:
+        """Whether what the fingers lost was seen, since then, not to be where it is now.
+
+        None if that was not seen, or nothing was lost.
+        """
+        return None if self._drawn_back is None else self._drawn_back.brought_to(now)
+
     def resume(self, told: Resume) -> Routine[None]:
+        self._drawn_back = None
         self._progress.object_at = told.object_at
         return super().resume(told)
 
@@ -110,6 +121,11 @@ class ArmExecution(Execution[ArmProgress]):
 
     def _go_to_rest(self) -> Routine[None]:
         """Put down or let go what is held, and move to neutral."""
+        drawn_back = self._drawn_back
+        way = self._draw_back()
+        yield from way if drawn_back is None else drawn_back.during(way, self._arm)
+
+    def _draw_back(self) -> Routine[None]:
         yield from put_down(self._arm, self._perception, self._progress.picked_at)
         yield from self._arm.go_to_neutral()
 
@@ -123,6 +139,10 @@ class ArmExecution(Execution[ArmProgress]):
         if interruption.reaction is Reaction.GO_TO_NEUTRAL:
             # The arm is to put nowhere what the fingers may still touch.
             self._perception.let_go()
+            if self._assignment.part is not None:
+                self._drawn_back = DrawnBack(
+                    self._assignment.part, self._perception, self._arm.body.time_s()
+                )
         yield from super()._react(interruption)
 
     def _confirm(self) -> Routine[bool]:

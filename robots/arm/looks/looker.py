@@ -118,4 +118,12 @@ class Looker:
             gone=[each for each, so in verdicts.items() if so is Presence.GONE],
             held=self.perception.hand.held,
             blind=blind,
+            brought=None if blind is not None else self._brought(image),
         )
+
+    def _brought(self, image: CameraImage) -> bool | None:
+        """Of what the fingers of the execution that waits have lost."""
+        if self.held is None or self.held.destination is None:
+            return None
+        seen = self.perception.head.sight(self.held.destination[0], image)
+        return None if seen is None or seen.toppled else self.held.brought_to(seen)

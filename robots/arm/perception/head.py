@@ -33,6 +33,7 @@ from mend.robots.vision.presence import (
 )
 from mend.robots.vision.projection import Points, project
 from mend.robots.vision.seen_box import SeenBox
+from mend.robots.vision.table_view import TableView
 
 HEAD = "head"
 
@@ -178,6 +179,15 @@ class HeadSense:
         return judge_presence(
             view, part, self._table.equals_of(part), target, self._catalogue.height_of(target)
         )
+
+    def understand(self, image: CameraImage) -> TableView | None:
+        """What a head picture just taken shows of the table, past the arm; None if nothing."""
+        return None if self.why_blind(image) is not None else self._table.view(image)
+
+    def stood_at(self, view: TableView, part: Part, at: HeadSighting) -> Presence:
+        """Whether a part, or one that looks the same, stood in an earlier view where it is now."""
+        spot = Location(x=at.x, y=at.y, z=at.z, yaw=at.yaw)
+        return judge_presence(view, part, self._table.equals_of(part), spot, at.z)
 
     def seen_gone(self, image: CameraImage, results: Iterable[JudgedResult]) -> list[JudgedResult]:
         """Of some results those whose part a picture shows, past the arm, not to be there."""

@@ -100,7 +100,9 @@ class Looked(Message):
     `another` also where something else than the object was held out to the fingers.
     `jpeg` and `detection`: what the camera showed where what was expected was not so, and where in
     that the object is seen, and is to be. `led_round`: `way_clear` is fulfilled because another way
-    leads round, not because what was in the way is gone.
+    leads round, not because what was in the way is gone. `brought`: whether what the fingers had
+    lost was seen, as the arm drew back, not to be where this look sees it; None if that was not
+    seen, or nothing was lost.
     """
 
     type: Literal["looked"] = "looked"
@@ -116,6 +118,7 @@ class Looked(Message):
     led_round: bool = False
     jpeg: str | None = None
     detection: Detection | None = None
+    brought: bool | None = None
 
 
 class WayFound(Message):

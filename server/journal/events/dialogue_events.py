@@ -4,7 +4,7 @@ from datetime import datetime
 from typing import Literal
 from uuid import UUID
 
-from mend.dialogue.evidence import Change
+from mend.dialogue.evidence import Change, LookOutcome
 from mend.dialogue.script import CloseReason, Expectation, Felt, Help, Sight
 from mend.robots.link.messages import Detection
 from mend.server.journal.events.event import Author, EventModel, NodeEvent
@@ -100,12 +100,21 @@ class FirstLook(DialogueEvent):
 
     `fulfilled`: what was so already. `position`: where the object was seen (base frame, metres),
     None if it was not. `blind`: the camera showed nothing of the table, so that nothing was seen.
+    `brought`: whether the object was seen, before that, not to be where it is now.
     """
 
     type: Literal["first_look"] = "first_look"
     fulfilled: list[Expectation]
     position: tuple[float, float, float] | None
     blind: bool = False
+    brought: bool | None = None
+
+    @property
+    def outcome(self) -> LookOutcome:
+        """What the look saw, as the rules of evidence take it."""
+        return LookOutcome(
+            frozenset(self.fulfilled), self.position, blind=self.blind, brought=self.brought
+        )
 
 
 class LookedAnew(DialogueEvent):

@@ -39,6 +39,7 @@ class Bench:
     dialogues: dict[UUID, DialogueView]
     put: list[tuple[str, Any]] = field(default_factory=list)
     live: bool = True
+    lost: bool = False
 
     def is_now(self, **changes: Any) -> None:
         self.dialogues[DIALOGUE] = self.dialogues[DIALOGUE].model_copy(update=changes)
@@ -98,6 +99,9 @@ async def bench() -> AsyncIterator[Bench]:
                 status=RunStatus.RUNNING, time=3.0, started=NOW, robots=["pr2"], result=None,
                 live=bench.live,
             )  # fmt: skip
+
+        def lost_robots(self) -> list[tuple[UUID, str]]:
+            return [(RUN, "pr2")] if bench.lost else []
 
     class Letters:
         def put(self, device: PushSubscription, letter: Letter) -> None:
@@ -204,6 +208,28 @@ async def test_a_lost_robot_calls_everybody_until_it_is_back(bench: Bench) -> No
     over = ("withdrawn", "It is there again.")
     assert await bench.take(back) == [("phone", *over), ("tablet", *over), ("watch", *over)]
     assert await bench.take(back) == []
+
+
+async def test_a_call_about_a_lost_robot_is_called_off_after_a_restart(bench: Bench) -> None:
+    await bench.take(lost())
+    [about] = {each.dialogue for _, each in bench.put}
+    bench.lost = True
+    # The service begins anew, and knows nothing but what was journaled.
+    calling = bench.calling
+    bench.calling = Calling(
+        calling._journal,
+        calling._dialogues,
+        calling._runs,
+        calling._subscriptions,
+        calling._letters,
+        lambda: 100.0,
+    )
+    await bench.calling.recover()
+    assert await bench.take(lost()) == [], "they know"
+    back = ev.RobotBack(time=5.0, wall_time=NOW, run=RUN, robot="pr2", boot="b", continues=False)
+    over = ("withdrawn", "It is there again.")
+    assert await bench.take(back) == [("phone", *over), ("tablet", *over), ("watch", *over)]
+    assert {each.dialogue for _, each in bench.put} == {about}
 
 
 async def test_a_lost_robot_calls_no_longer_than_its_run_goes_on(bench: Bench) -> None:

@@ -1,12 +1,13 @@
 """What a look is compared with: with every one that was taken since the question was put."""
 
+from collections.abc import Collection
 from types import SimpleNamespace
 from typing import Any
 from uuid import UUID
 
 import pytest
 
-from mend.dialogue.evidence import Change, PutRight
+from mend.dialogue.evidence import Change, LookOutcome, PutRight
 from mend.dialogue.script import Expectation, Help
 from mend.robots.link.messages import Sighting
 from mend.server.runtime.dialogue_looks import DialogueLooks
@@ -14,16 +15,47 @@ from mend.server.runtime.dialogue_looks import DialogueLooks
 HERE, THERE = (0.5, 0.1), (0.5, 0.3)
 
 
-def about_cup(*, blind: bool = False) -> Any:
+def about_cup(
+    *,
+    blind: bool = False,
+    brought: bool | None = None,
+    promised_first: bool = False,
+    denied: Collection[Expectation] = (),
+    step: int = 4,
+    last_seen: tuple[float, float] = HERE,
+) -> Any:
     """A dialogue whose first look saw the cup within reach, or nothing at all."""
-    raised = SimpleNamespace(object="cup", place=None, detection=None, interrupts=True)
-    first = SimpleNamespace(fulfilled=["in_reach"], position=(*HERE, 0.7), blind=False)
+    raised = SimpleNamespace(
+        object="cup",
+        place=None,
+        detection=None,
+        interrupts=True,
+        step=step,
+        last_seen=(*last_seen, 0.7),
+    )
+    outcome = LookOutcome(frozenset({Expectation.IN_REACH}), (*HERE, 0.7), brought=brought)
     if blind:
-        first = SimpleNamespace(fulfilled=[], position=None, blind=True)
+        outcome = LookOutcome(frozenset(), None, blind=True)
+    first = SimpleNamespace(
+        fulfilled=sorted(outcome.fulfilled),
+        position=outcome.position,
+        blind=outcome.blind,
+        outcome=outcome,
+    )
     right = (Expectation.IN_REACH,)
-    watched = SimpleNamespace(watched_for=right, puts_right=right)
+    watched = SimpleNamespace(
+        watched_for=right,
+        puts_right=right,
+        denied=frozenset(denied),
+        contradictable=frozenset(denied),
+    )
     return SimpleNamespace(
-        id=UUID(int=1), raised=raised, first_look=first, looked_anew=None, conversation=watched
+        id=UUID(int=1),
+        raised=raised,
+        first_look=first,
+        promised_first=promised_first,
+        looked_anew=None,
+        conversation=watched,
     )
 
 
@@ -37,7 +69,12 @@ def watch(looks: DialogueLooks, dialogue: Any, proxy: Any) -> None:
 def seeing(at: tuple[float, float], *, blind: str | None = None) -> Any:
     cup = Sighting(x=at[0], y=at[1], z=0.7, yaw=0.0, time=1.0)
     return SimpleNamespace(
-        seen={"cup": cup}, there=frozenset(), held=None, blind=blind, led_round=False
+        seen={"cup": cup},
+        there=frozenset(),
+        held=None,
+        blind=blind,
+        led_round=False,
+        brought=None,
     )
 
 
@@ -86,6 +123,50 @@ def test_once_the_camera_saw_again_what_it_saw_then_is_compared_with() -> None:
     found = looks.put_right(dialogue, seeing(THERE), fulfilled=True)
     assert found == PutRight(Expectation.IN_REACH, Change.APPEARED)
     assert looks.change_seen(dialogue, seeing(THERE), Help.PUT_BACK) is Change.APPEARED
+
+
+@pytest.mark.parametrize(
+    ("known", "change"),
+    [
+        # It lay elsewhere as the arm drew back, or where it lies now, or that was not seen.
+        ({"brought": True}, Change.APPEARED),
+        ({"brought": False}, Change.NONE),
+        ({"brought": None}, Change.NONE),
+        ({"brought": False, "promised_first": True}, Change.NONE),
+        ({"promised_first": True}, Change.UNKNOWN),
+        # It was found nowhere, or seen out of reach, before the robot touched it.
+        ({"promised_first": True, "denied": [Expectation.IN_REACH]}, Change.APPEARED),
+        ({"promised_first": True, "step": 0, "last_seen": THERE}, Change.MOVED),
+        ({"promised_first": True, "step": 0}, Change.NONE),
+        ({"denied": [Expectation.IN_REACH]}, Change.NONE),
+        ({"step": 0, "last_seen": THERE}, Change.NONE),
+    ],
+)
+def test_help_before_the_first_look_is_told_by_what_was_known_before_it(
+    known: dict[str, Any], change: Change
+) -> None:
+    context: Any = None
+    dialogue = about_cup(**known)
+    looks = DialogueLooks(context, None)
+    assert looks.change_seen(dialogue, seeing(HERE), Help.PUT_BACK) is change
+    # What changes later than that changes all the same.
+    later = looks.change_seen(dialogue, seeing((0.3, 0.3)), Help.PUT_BACK)
+    assert later.by_a_person
+
+
+@pytest.mark.parametrize(
+    ("brought", "right"),
+    [(True, PutRight(Expectation.IN_REACH, Change.APPEARED)), (False, None), (None, None)],
+)
+def test_what_somebody_has_put_right_before_the_first_look_needs_no_answer(
+    brought: bool | None, right: PutRight | None
+) -> None:
+    context: Any = None
+    looks, dialogue, robot = DialogueLooks(context, None), about_cup(), seeing(HERE)
+    robot.brought = brought
+    first = looks.first_look(dialogue, robot, fulfilled=True)
+    assert first.brought is brought
+    assert looks.right_at_first(dialogue, first) == right
 
 
 def test_darkness_meanwhile_is_nothing_to_compare_with() -> None:

@@ -150,6 +150,50 @@ async def test_who_promises_before_the_first_look_and_does_it_is_thanked(
     assert of_type(events, ev.Resolved)[0].helped
 
 
+@pytest.mark.parametrize("answers", ["none", ["yes"]])
+async def test_who_puts_it_right_before_the_first_look_is_thanked(
+    answers: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", 0.0)
+    person = {"never": 1.0}
+    _, events = await run_with(
+        "dropped", 4, answers, times=1, person=person, wrong=True, brought=True
+    )
+    [resolved] = of_type(events, ev.Resolved)
+    assert (resolved.resolution, resolved.helped) == (Resolution.ROBOT_RETRY, True)
+    assert "Thank you." in said(events)[-1]
+    assert not any(each.failed_attempt for each in of_type(events, ev.NodeReset))
+
+
+async def test_where_nobody_can_say_who_put_it_there_nobody_says_so(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", 0.0)
+    _, events = await run_with(
+        "dropped", 4, ["yes"], times=1, person={"never": 1.0}, wrong=True, brought=None
+    )
+    assert not any(each.helped for each in of_type(events, ev.Resolved))
+    assert said(events)[2] == (
+        "I see the part 1 within my reach now. I try again (still attempt 1 of 3)."
+    )
+    [reset] = of_type(events, ev.NodeReset)
+    assert (reset.failed_attempt, reset.reason) == (
+        False,
+        "nobody can say whether anybody has helped",
+    )
+
+
+async def test_nobody_can_say_that_again_and_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", 0.0)
+    person = {"never": 1.0}
+    view, events = await run_with(
+        "dropped", 4, ["yes"] * 50, person=person, wrong=True, brought=None
+    )
+    assert view.status is RunStatus.FAILED
+    resets = [each.failed_attempt for each in of_type(events, ev.NodeReset)]
+    assert resets == [False, True, True, True]
+
+
 async def test_operators_hear_of_a_robot_that_is_wrong_also_where_no_is_said_at_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -267,3 +311,16 @@ async def test_who_takes_longer_than_the_deadline_is_heard_when_asked_again(
     asked, answered = of_type(events, ev.Prompt)[0], of_type(events, ev.Answered)[0]
     assert answered.time == pytest.approx(asked.time + delay_s, abs=0.1)
     assert [each.helped for each in of_type(events, ev.Resolved)] == [True]
+
+
+@pytest.mark.parametrize(("delay_s", "by"), [(0.5, "both"), (1.5, "both"), (30.0, "robot")])
+async def test_a_script_may_say_yes_until_the_gripper_opens(
+    delay_s: float, by: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(answering, "DEFAULT_DELAY_S", delay_s)
+    _, events = await run_with("positioning", 5, ["yes"] * 9, times=1)
+    assert of_type(events, ev.NodeDone)[0].by == by
+    [closed] = of_type(events, ev.DialogueClosed)
+    release = next(each for each in of_type(events, ev.StepStarted) if each.phase == "release")
+    assert events.index(closed) < events.index(release)
+    assert closed.reason == ("resolved" if by == "both" else "aborted")

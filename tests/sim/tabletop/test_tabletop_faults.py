@@ -76,6 +76,40 @@ def test_a_part_moved_away_before_the_grasp_is_seen_as_missed() -> None:
     assert driver.run_until_issue().issue == "missed"
 
 
+@pytest.mark.parametrize(
+    ("deed", "when_s", "brought"),
+    [
+        # Before the arm has drawn back, and once it has.
+        (Intervention(act=Act.PUT_BACK, object="o1"), 1.6, True),
+        (Intervention(act=Act.PLACE, object="o1", place="p1"), 1.6, True),
+        (Intervention(act=Act.PUT_BACK, object="o1"), 5.0, True),
+        # Sooner than anything that falls has come to rest nobody is told from the robot itself.
+        (Intervention(act=Act.PUT_BACK, object="o1"), 0.1, False),
+    ],
+)
+def test_what_people_bring_before_the_first_look_is_told_from_what_lies_there(
+    deed: Intervention, when_s: float, brought: bool
+) -> None:
+    driver = make_driver(LAID_OUT, during(5, 0.2, steal()))
+    driver.start("o1", "p1")
+    driver.run_until_issue()
+    lost_s = driver.group.time_s()
+    driver.run(until=lambda: driver.group.time_s() >= lost_s + when_s, chunk_s=0.1)
+    driver.send(Intervene(intervention=deed, by="ann"))
+    assert expect(driver, Look(object="o1", place="p1", expect="in_reach", within_s=1.0)) is True
+    assert driver.of(Looked)[-1].body.brought is brought
+
+
+def test_what_the_robot_itself_has_missed_nobody_has_brought() -> None:
+    start = LAID_OUT.objects["o1"].pose
+    aside = Intervention(act=Act.MOVE, object="o1", to=Pose(x=start.x, y=start.y + 0.07))
+    driver = make_driver(LAID_OUT, during(2, 0.5, aside))
+    driver.start("o1", "p1")
+    driver.run_until_issue()
+    assert expect(driver, Look(object="o1", place="p1", expect="in_reach", within_s=1.0)) is True
+    assert driver.of(Looked)[-1].body.brought is False
+
+
 def test_a_part_that_is_nowhere_is_seen_as_missing() -> None:
     driver = make_driver()
     driver.send(by_ann(Act.STEAL, object="o1"))

@@ -15,6 +15,8 @@ import { floorShownAt } from "./whereabouts";
 export const RADIUS_M = 0.25;
 const LEAST_RADIUS_PX = 9;
 const LABELS_EVERY_MS = 300;
+/** Where there is less of the plan to each robot, as on a phone, only those that ask say more than their name, and others are named where there is room: the list below has all. */
+const ROOM_PX2 = 12_000;
 
 export interface Marks {
   draw(positions: Positions): void;
@@ -111,14 +113,20 @@ function createLayer() {
     if (now - laidOut >= LABELS_EVERY_MS || floorBefore !== floor.name || shown.some(({ robot }) => !offsets.has(robot))) {
       laidOut = now;
       floorBefore = floor.name;
-      const named = shown.map(({ robot, at, name }): Named => {
+      const crowded = size.width * size.height < shown.length * ROOM_PX2;
+      names.classList.toggle("crowded", crowded);
+      const asks = (name: HTMLElement) => name.classList.contains("robot-asking");
+      const askingFirst = shown.toSorted((a, b) => Number(asks(b.name)) - Number(asks(a.name)));
+      const named = askingFirst.map(({ robot, at, name }): Named => {
         const { offsetWidth: width, offsetHeight: height } = name;
-        return { id: robot, ...at, clear: radius, width, height, always: true, before: offsets.get(robot) };
+        const always = !crowded || asks(name);
+        return { id: robot, ...at, clear: radius, width, height, always, before: offsets.get(robot) };
       });
       const bounds = { left: 0, top: 0, right: size.width, bottom: size.height };
       const placed = placeLabels(named, boxes, bounds);
-      for (const { robot, at } of shown) {
+      for (const { robot, at, name } of shown) {
         const spot = placed.get(robot);
+        name.classList.toggle("without-room", spot === undefined);
         if (spot !== undefined) offsets.set(robot, { dx: spot.left - at.x, dy: spot.top - at.y });
       }
       const taken = named.flatMap(({ id, width, height }) => {

@@ -94,11 +94,11 @@ function phrase(text: string): string | null {
   return null;
 }
 
-/** `rest` is a clause in turn, and a part and a kind of issue may be called by words of the service's own; of what else fills a field only numbers are written otherwise. */
+/** `rest`, `deed` and `wanted` are clauses in turn, and a part and a kind of issue may be called by words of the service's own; of what else fills a field only numbers are written otherwise. */
 function mapped(groups: Readonly<Record<string, string>>): Record<string, string> {
   return Object.fromEntries(
     Object.entries(groups).map(([name, value]) => {
-      if (name === "rest") return [name, phrase(value) ?? value];
+      if (name === "rest" || name === "deed" || name === "wanted") return [name, phrase(value) ?? value];
       if (name === "part") return [name, texts.get(value) ?? value];
       if (name === "issue") return [name, texts.get(value.replaceAll("_", " ")) ?? value];
       const decimals = /^-?\d+\.(\d+)$/.exec(value)?.[1];
@@ -107,11 +107,12 @@ function mapped(groups: Readonly<Record<string, string>>): Record<string, string
   );
 }
 
-/** What fills a field is short and no clause, but for `rest`; a part may have its article. */
+/** What fills a field is short, but for `rest` and `deed`; a part may have its article. */
 function patternOf(key: string): RegExp {
   const escaped = key.replace(/[.*+?^$()|[\]\\]/g, "\\$&");
   const fields = escaped.replace(/\{(\w+)\}/g, (_, name: string) => {
     if (name === "rest") return "(?<rest>.+)";
+    if (name === "deed") return "(?<deed>.+?)";
     return `${name === "part" ? "(?:the )?" : ""}(?<${name}>[^,;:?!]{1,80}?)`;
   });
   return new RegExp(`^${fields}$`, "i");

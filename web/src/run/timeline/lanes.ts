@@ -4,6 +4,7 @@ import type { DialogueClosed, Event, NodeDone, NodeLeftOut, NodeReset, Resolutio
 import type { Told } from "../../wire/told";
 import { lastOf } from "../transcript_lines";
 import { issueKind } from "../../words/issue_kinds";
+import { said } from "../../words/said";
 import { t } from "../../words/words";
 
 export type LaneKind = "steps" | "faults" | "lost" | "dialogues" | "people" | "waits" | "resolutions";
@@ -44,6 +45,35 @@ const STEERING_WORDS = {
   leaf_not_preferred: t("not next"),
   leaf_tried_again: t("again"),
 } as const;
+
+/** What people do in a world, in a word or two. */
+const ACT_WORDS: Readonly<Record<string, string>> = {
+  steal: t("takes away|a deed on the timeline"),
+  put_back: t("puts back|a deed on the timeline"),
+  place: t("places|a deed on the timeline"),
+  hand_over: t("hands over|a deed on the timeline"),
+  move: t("moves|a deed on the timeline"),
+  block: t("in the way|a deed on the timeline"),
+  release: t("helps on|a deed on the timeline"),
+  cover: t("covers camera|a deed on the timeline"),
+  uncover: t("clears camera|a deed on the timeline"),
+  put_in: t("puts in|a deed on the timeline"),
+  take_out: t("takes out|a deed on the timeline"),
+  charge: t("plugs in|a deed on the timeline"),
+  bar: t("bars way|a deed on the timeline"),
+  clear: t("clears way|a deed on the timeline"),
+  send_person: t("sends person|a deed on the timeline"),
+  misdirect: t("wrong button|a deed on the timeline"),
+};
+
+/** How a dialogue ended. */
+const CLOSING_WORDS: Readonly<Record<DialogueClosed["reason"], string>> = {
+  resolved: t("resolved|a dialogue"),
+  withdrawn: t("withdrawn|a dialogue"),
+  gave_up: t("given up|a dialogue"),
+  left_out: t("left out"),
+  aborted: t("lapsed|a dialogue"),
+};
 
 const ENDS_A_WAIT: ReadonlySet<Event["type"]> = new Set([
   "leaf_let_go",
@@ -131,7 +161,7 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
         lanes.people.push(point(event, t("takes|a person, a leaf"), t("{helper} takes {name}", { helper: event.helper, name: plain(event.name) }), "deed", event.node));
         break;
       case "node_undone":
-        lanes.faults.push(point(event, issueKind("undone"), t("{name} is done no longer: {reason}", { name: plain(event.name), reason: event.reason }), "fault", event.node));
+        lanes.faults.push(point(event, issueKind("undone"), t("{name} is done no longer: {reason}", { name: plain(event.name), reason: said(event.reason) }), "fault", event.node));
         break;
       case "issue_raised": {
         const about = plain(event.object ?? event.name);
@@ -141,7 +171,7 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
       case "robot_lost": {
         const robot = withoutRun(event.robot);
         if (away.has(event.robot)) break;
-        const item = bar(event, now, robot, t("{robot} is lost: {reason}", { robot, reason: event.reason }), "lost", null);
+        const item = bar(event, now, robot, t("{robot} is lost: {reason}", { robot, reason: said(event.reason) }), "lost", null);
         away.set(event.robot, item);
         lanes.lost.push(item);
         break;
@@ -168,7 +198,7 @@ export function lanesOf(events: readonly Told[], now: number): Lane[] {
         lanes.people.push(
           point(
             event,
-            plain(event.act),
+            ACT_WORDS[event.act] ?? plain(event.act),
             `${event.by}: ${lastOf(event)}`,
             event.ok ? "deed" : "deed vain",
             null,
@@ -236,7 +266,7 @@ function closeDialogue(open: Map<string, Growing>, event: DialogueClosed): void 
   if (item === undefined) return;
   open.delete(event.dialogue);
   item.end = event.time;
-  item.title += `, ${plain(event.reason)}`;
+  item.title += `, ${CLOSING_WORDS[event.reason]}`;
 }
 
 function comeBack(away: Map<string, Growing>, event: RobotBack): void {
