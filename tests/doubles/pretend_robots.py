@@ -3,7 +3,7 @@
 import asyncio
 import base64
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -43,7 +43,7 @@ from mend.tasks.intervention import Act
 FIRST_JPEG, SECOND_JPEG = b"\xff\xd8\xff first \xff\xd9", b"\xff\xd8\xff second \xff\xd9"
 
 PARTS = {f"part_{number}": 0.01 * number for number in range(100)}
-"""What there is on the table, with its y."""
+"""What may be on the table, with its y."""
 
 RELEASES = 7
 """The step in which it lets go."""
@@ -72,7 +72,7 @@ class PretendRobot:
     believes to have missed or dropped stands within its reach all the time, and it says of that
     whether it was `brought` there. `held` is between its
     fingers all the time. Once `blinded_by` is placed its head camera is covered, until somebody
-    clears its view.
+    clears its view. `table`: what is on it, with its y.
     """
 
     name: str
@@ -114,6 +114,7 @@ class PretendRobot:
     held: str | None = None
     blinded_by: str | None = None
     blind: bool = False
+    table: Mapping[str, float] = field(default_factory=lambda: PARTS)
 
     def hello(self) -> Hello:
         return Hello(
@@ -338,12 +339,12 @@ class PretendRobots:
             if not fulfilled:
                 # What is queued may be the deed that is being watched for.
                 robot.time += look.within_s
-        unseen = PARTS.keys() if robot.blind else robot.hidden | robot.lost
+        unseen = robot.table.keys() if robot.blind else robot.hidden | robot.lost
         seen = {
             name: Sighting(
                 x=0.5 if name in robot.placed else 0.4, y=y, z=0.7, yaw=0, time=robot.time
             )
-            for name, y in PARTS.items()
+            for name, y in robot.table.items()
             if name not in unseen
         }
         await self.report(

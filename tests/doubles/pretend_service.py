@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 from uuid import UUID
 
-from pretend_robots import PretendRobot, PretendRobots
+from pretend_robots import PARTS, PretendRobot, PretendRobots
 
 from mend.dialogue.registry import load_scripts
 from mend.dialogue.script import Script
@@ -32,7 +32,7 @@ from mend.server.runtime.run_state import RunState
 from mend.server.runtime.runtime import Runtime
 from mend.server.runtime.team import Neighbour
 from mend.server.runtime.views import RunView
-from mend.tasks.definition import TaskTreeDefinition
+from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
 from mend.tasks.scene import Scene
 
 BARE = Scene(name="bare", objects={}, places={})
@@ -130,8 +130,14 @@ async def pretend_service(
     """A runtime whose robots run into `faults` (object -> issue and step, in turn)."""
     kept = SqliteJournal(journal or ":memory:", sleep=sleep)
     robots = PretendRobots()
+    # What no run is about would only be seen, told and read again with each look.
+    handled = {node.object for node in definition.nodes if isinstance(node, BehaviorNode)}
+    table = {part: y for part, y in PARTS.items() if part in handled}
     robots.make = lambda name: PretendRobot(
-        name, faults={part: list(each) for part, each in (faults or {}).items()}, **robot
+        name,
+        faults={part: list(each) for part, each in (faults or {}).items()},
+        table=table,
+        **robot,
     )
     mails: list[ev.Escalated | ev.SuspectedFalseAlarm] = []
 
