@@ -1,6 +1,6 @@
 """Every view at every width, light and dark: what axe finds, what overlaps, what sticks out.
 
-Each is played once, and all is looked at in it, in English and then in German.
+Each that is drawn is played once, and all is looked at in it, in English and then in German.
 """
 
 from collections.abc import Sequence
@@ -107,6 +107,7 @@ OWN_WORDS = (
 )
 
 
+@pytest.mark.drawn(5)
 @pytest.mark.parametrize("situation", QUIET, ids=lambda each: each.__name__)
 async def test_nothing_is_wrong_where_nothing_goes_on(
     lasting_service: Service, reopen: OpenPage, lasting_page: Page, situation: Situation
@@ -116,6 +117,7 @@ async def test_nothing_is_wrong_where_nothing_goes_on(
     await expect_nothing_wrong(await situation(lasting_service, reopen), situation)
 
 
+@pytest.mark.drawn(12)
 @pytest.mark.parametrize("situation", EVENTFUL, ids=lambda each: each.__name__)
 async def test_nothing_is_wrong_with_it(
     service: Service, open_page: OpenPage, situation: Situation
