@@ -1,6 +1,6 @@
 """Answers by voice, and what else can be said, in a real browser.
 
-That every dialogue is walked is for `test_question_dialogues.py`, by buttons.
+That dialogues are walked is for `test_question_dialogues.py`, by buttons.
 """
 
 import asyncio
