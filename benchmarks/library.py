@@ -107,7 +107,7 @@ async def run_task(
 
     from mend.server.composition import open_service
 
-    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error")
+    settings = Settings(port=0, journal=Path(IN_MEMORY), log_level="error", speech_voice="none")
     request = RunRequest(
         tree=task,
         world=world,
