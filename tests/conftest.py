@@ -13,6 +13,8 @@ from drawn_parameters import left_out
 from hypothesis import settings
 from sampled import sample
 
+from mend.garbage import look_for_garbage_seldom
+
 # Each process, also those that the tests start, would compile all modules once more.
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -33,8 +35,12 @@ for client in (httpx.AsyncClient, httpx.Client):
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_finish() -> None:
-    """Garbage is looked for only among what tests make: going through all tests takes long."""
+    """Garbage is looked for only among what tests make, and as seldom as wherever Mend runs.
+
+    Going through all tests takes long.
+    """
     gc.freeze()
+    look_for_garbage_seldom()
     gc.enable()
 
 
