@@ -41,13 +41,13 @@ class DrawnBack:
     def brought_to(self, now: HeadSighting) -> bool | None:
         """Whether the part was seen not to be where it is now; None if that was not seen.
 
-        One noisy picture says nothing: it takes two, one after the other.
+        One noisy picture says nothing: it takes two, one after the other. That it was there all the
+        time only the first view can tell: by the next ones somebody may have brought it.
         """
         verdicts = [self._head.stood_at(view, self._part, now) for view in self._views]
         if _twice_on_end(verdicts, Presence.GONE):
             return True
-        telling = (each for each in verdicts if each is not Presence.HIDDEN)
-        return False if next(telling, None) is Presence.THERE else None
+        return False if verdicts[:1] == [Presence.THERE] else None
 
     def _look(self) -> None:
         self._head.doubt()

@@ -107,7 +107,7 @@ def test_what_the_robot_itself_has_missed_nobody_has_brought() -> None:
     driver.start("o1", "p1")
     driver.run_until_issue()
     assert expect(driver, Look(object="o1", place="p1", expect="in_reach", within_s=1.0)) is True
-    assert driver.of(Looked)[-1].body.brought is False
+    assert driver.of(Looked)[-1].body.brought is not True
 
 
 def test_a_part_that_is_nowhere_is_seen_as_missing() -> None:
