@@ -190,8 +190,9 @@ class EnmlLocalizer:
         if not self._is_lost:
             place = self._against_place(episode.nodes[-1])
             elsewhere = its.map_counts * (place - its.map_misleads)
-        # Whoever stands may be carried, too: a strange scan is news, however far it drove.
-        least_m = its.news_after_m if beside.strange > 0.0 else 0.0
+        # Whoever stands may be carried, too, and the first scan there is all news; the next ones
+        # say much the same again.
+        least_m = its.news_after_m if beside.is_sudden else 0.0
         self._measure.weigh(max(self._unweighed, least_m), beside, elsewhere)
         self._unweighed = 0.0
         if self._measure.probability > its.lost_above:

@@ -95,17 +95,13 @@ class EnmlParameters:
     tells_at_most: float = 5.0
     """... and none changes the logarithm of the odds by more than this (ours: one alone is not
     enough)."""
-    recognized_share: float = 0.6
-    """So much of what is on no map, less what changed, is recognized from a scan just before, at
-    first (ours: the median of made-up drives is 0.7, that of logs 0.3 to 0.7)..."""
-    recognized_spread: float = 0.2
-    """... with this standard deviation (ours: 0.1 to 0.3)..."""
-    strange_per_m: float = 0.2
-    """... and so much less per metre and radian that the scans are apart (ours)..."""
+    usual_change: float = 0.15
+    """So much changes, or is neither on the map nor recognized, from scan to scan at first (ours:
+    the medians of made-up drives are 0.06 to 0.18)..."""
+    usual_spread: float = 0.1
+    """... with this standard deviation (ours)..."""
     usual_scans: float = 30.0
     """... and later as it was in about so many scans before (ours)."""
-    carried_spread: float = 0.1
-    """Who was carried recognizes hardly more than has changed: the mean of by how much (ours)."""
     map_counts: float = 0.1
     """How much a scan's likelihood on the map counts..."""
     map_misleads: float = 20.0

@@ -29,8 +29,8 @@ class UsualChange:
 
     def __init__(self, parameters: EnmlParameters) -> None:
         self._parameters = its = parameters
-        self._mean = -its.recognized_share
-        self._variance = its.recognized_spread**2
+        self._mean = its.usual_change
+        self._variance = its.usual_spread**2
         self._scans = _FIRST_SCANS
 
     def learn(self, change: float, weight: float) -> None:
