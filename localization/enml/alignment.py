@@ -35,13 +35,12 @@ _MAX_SHIFT_M = 0.6
 
 @dataclass(frozen=True, slots=True)
 class Aligned:
-    """The best place of the lattice, and by how much it beats the prediction (log-likelihood).
+    """The best place of the lattice.
 
     `fit` is the share of the near points that lie there on the map or on what was seen just before.
     """
 
     pose: Poses
-    gain: float
     fit: float
 
 
@@ -74,7 +73,7 @@ class Aligner:
         """
         near = points[np.hypot(*points.T) < _MAX_REACH_M]
         if not len(near):
-            return Aligned(predicted, 0.0, 1.0)
+            return Aligned(predicted, 1.0)
         near = near[:: len(near) // _MAX_POINTS + 1]
         reach_m = float(np.percentile(np.hypot(*near.T), 80))
         shift_m = float(np.clip(_DEVIATIONS * deviations[:2].max(), _MIN_SHIFT_M, _MAX_SHIFT_M))
@@ -90,11 +89,10 @@ class Aligner:
         scores *= self._parameters.alignment_weight * len(points) / len(near)
         scores -= _doubt(turns, shifts, deviations)
         best = np.unravel_index(int(scores.argmax()), scores.shape)
-        gain = scores[best] - scores[tuple(size // 2 for size in scores.shape)]
         moved = np.array([shifts[best[1]], shifts[best[2]], turns[best[0]]])
         pose = predicted + moved
         pose[2] = wrap_angle(pose[2])
-        return Aligned(pose, float(gain), fit)
+        return Aligned(pose, fit)
 
     def _surroundings(
         self, recent: Floats, center: Floats, shift_m: float, on_map: bool

@@ -4,7 +4,7 @@ And what did not: what is seen again where it was.
 """
 
 from dataclasses import dataclass
-from math import cos, log
+from math import cos
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from mend.localization.enml.episode import Episode
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import PoseNode
 from mend.localization.enml.problem import Floats
-from mend.localization.enml.usual_change import UsualChange
+from mend.localization.enml.usual_change import UsualChange, log_density_of_carried
 from mend.localization.pose import Poses, compose, relative, transform, wrap
 
 _THROUGH_M = 0.3
@@ -24,10 +24,6 @@ _LEAST_COMPARED = 20
 LEAST_RETURNS = 40
 """Fewer returns say nothing about where a robot is."""
 _COMPARED_WITHIN_M = 1.2
-_LEAST_CHANGE, _WHOLLY_CHANGED = 1e-3, 2.0
-"""Where a robot was carried, all that it saw is gone and nothing that it sees is recognized; the
-nearer to that, the likelier (ours: half of 31 scans after it was carried above 1.5, the least 0.8;
-of 5,850 before 99 % below 0.5)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +58,8 @@ class Strangeness:
         """The newest scan beside the last familiar one.
 
         Nothing can be said where they are farther apart than `within_m` (and radians, together).
-        Only what is on no map is to be recognized, as walls look the same in many places. The scan
+        Only what is on no map is to be recognized, as walls look the same in many places; for who
+        was carried what changed less what is recognized is as likely anything from 0 on. The scan
         is learned from as far as it is `news` (0 to 1).
         """
         before = self._compared_with(episode)
@@ -73,7 +70,7 @@ class Strangeness:
             return _NOTHING
         identity = episode.nodes[before].identity
         change = self._change(episode, before)
-        strange = _log_density_of_carried(change) - self._usual.log_density(change)
+        strange = log_density_of_carried(change) - self._usual.log_density(change)
         self._usual.learn(change, news)
         compared = Comparison(
             strange, self._familiar in (None, identity), strange > 0.0 and self._familiar is None
@@ -82,16 +79,14 @@ class Strangeness:
         return compared
 
     def _change(self, episode: Episode, before: int) -> float:
-        """What changed from a pose to the newest, and what is neither on the map nor recognized.
-
-        In shares of what is seen (0 to 3). Where all is on the map hardly anything has to be
-        recognized, and where nothing is, all of it.
-        """
+        """What changed from a pose to the newest, less what is recognized (-1 to 2)."""
         earlier, later = episode.nodes[before], episode.nodes[-1]
         there, here = episode.poses[before], episode.poses[-1]
         recognized = recognized_points(earlier, later, relative(there, here), self._parameters)
-        unexplained = ~(later.is_ltf | recognized)
-        return changed(earlier, there, later, here) + float(unexplained.mean())
+        of_those = recognized[~later.is_ltf]
+        # Laplace's rule of succession: of a few points the share is hardly known.
+        share = (1.0 + float(of_those.sum())) / (2.0 + len(of_those))
+        return changed(earlier, there, later, here) - share
 
     def _compared_with(self, episode: Episode) -> int | None:
         """The last familiar pose, unless it is too far back, or else the last that saw enough."""
@@ -105,11 +100,6 @@ class Strangeness:
         if familiar is not None and _apart(episode, familiar) < _COMPARED_WITHIN_M:
             return familiar
         return enough[-1] if enough else None
-
-
-def _log_density_of_carried(change: float) -> float:
-    """Rises straight from nothing to what has wholly changed."""
-    return log(max(2.0 * change, _LEAST_CHANGE) / _WHOLLY_CHANGED**2)
 
 
 def _apart(episode: Episode, before: int) -> float:

@@ -23,7 +23,7 @@ def seen(world: np.ndarray, pose: Poses) -> PoseNode:
     angles = np.linspace(-2.0, 2.0, 121)
     ranges, _ = cast(world, float(pose[0]), float(pose[1]), pose[2] + angles, 20.0)
     scan = Scan(ranges, -2.0, float(angles[1] - angles[0]), 20.0)
-    return PoseNode.of(0, scan, scan_points(scan), Travel(), 0.15, 0.15)
+    return PoseNode.of(0, scan, scan_points(scan), Travel(), 0.15)
 
 
 def test_driving_on_changes_nothing() -> None:
@@ -66,7 +66,7 @@ def test_what_faces_another_way_is_not_recognized() -> None:
     straight, slanted = ([[2.0, -1.0, 2.0 + lean, 1.0]] for lean in (0.0, 2.0))
     before, now = (seen(np.array(wall), HERE) for wall in (straight, slanted))
     gaps = now.scan_points.points[:, None] - before.scan_points.points
-    near = np.hypot(*gaps.T).min(axis=0) < EnmlParameters().stf_gate_m
+    near = np.hypot(*gaps.T).min(axis=0) < EnmlParameters().gate_m
     assert near.any()
     assert not recognized_points(before, now, HERE, EnmlParameters())[near].any()
 
