@@ -42,8 +42,6 @@ class EnmlParameters:
     """A point farther from the map's line than this is no long-term feature, and two points farther
     apart are not the same thing (published for the latter, for lines 0.25: among furniture, too
     much of what stands near walls is then taken for them)."""
-    ltf_widest_gate_m: float = 1.0
-    """Where the gate starts when the prediction is at its most uncertain (ours)."""
     ltf_max_angle_rad: float = radians(35.0)
     """Largest angle between a point's normal and its line's (published)."""
     ltf_correlation: float = 1.0 / 20.0
@@ -66,14 +64,14 @@ class EnmlParameters:
     """A robot that has driven this far without seeing anything is lost (ours)."""
 
     min_episode_length: int = 10
-    """Poses that are kept even if nothing ties the newest to them (published)."""
+    """Poses that are kept even if nothing ties the newest to them (published), and so many of the
+    newest that the pre-alignment lays a scan over (ours)."""
     max_episode_length: int = 25
     """Poses after which the oldest is let go whatever ties it (ours; published 80), and about so
     many tell how much usually changes around the robot."""
     alignment_weight: float = 0.25
     """How much one of many correlated rays counts in the pre-alignment (ours)."""
-    alignment_scans: int = 4
-    """How many of the last poses the pre-alignment lays the newest scan over (ours)."""
+
     carried_per_m: float = 1e-3
     """How often a robot is carried away, or loses its way, per metre driven: the prior."""
     tells_at_most: float = 5.0
@@ -95,9 +93,6 @@ class EnmlParameters:
     off_map_for_m: float = 40.0
     """A robot that has driven this far where the map shows nothing is lost (ours: what it sees
     twice leads it a metre astray in some 100 m)."""
-    alignment_believed_above: float = 0.55
-    """The pre-alignment is followed if it lays more than this share of a scan on something (ours:
-    0.61 to 0.88 in the worst hundredth of drives)."""
     found_above: float = 10.0
     """How much likelier what is seen has to be at the place where a lost robot is found than
     anywhere (ours; logarithm per scan)."""
@@ -129,8 +124,6 @@ class EnmlParameters:
             )
         if not self.stf_separations or min(self.stf_separations) < 1:
             raise ValueError("stf_separations must name at least one pose back, counted from 1")
-        if self.ltf_widest_gate_m < self.gate_m:
-            raise ValueError("ltf_widest_gate_m must not be below gate_m")
         for name in ("ltf_max_angle_rad", "stf_max_angle_rad"):
             if getattr(self, name) > pi / 2:
                 raise ValueError(f"{name} must not be above a right angle")

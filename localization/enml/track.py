@@ -100,19 +100,17 @@ class Track:
         recent = [
             transform(pose, node.scan_points.points)
             for node, pose in list(zip(nodes[:-1], poses, strict=False))[
-                -parameters.alignment_scans :
+                -parameters.min_episode_length :
             ]
         ]
         newest = nodes[-1]
-        aligned = self._aligner.align(
+        poses[-1] = self._aligner.align(
             np.concatenate([np.zeros((0, 2)), *recent]),
             newest.scan_points.points,
             poses[-1],
             newest.travel.deviations(parameters),
             on_map=self.by is By.MAP,
         )
-        if aligned.fit >= parameters.alignment_believed_above:
-            poses[-1] = aligned.pose
 
     def _set_first_gate(self) -> None:
         """Open the newest pose's gate as wide as its prediction is uncertain."""
@@ -122,7 +120,7 @@ class Track:
         points = node.scan_points.points
         reach_m = float(np.median(np.hypot(*points.T))) if len(points) else 0.0
         doubt_m = 2.0 * float(np.hypot(max(along_m, across_m), heading_rad * reach_m))
-        node.gate_m = float(np.clip(doubt_m, parameters.gate_m, parameters.ltf_widest_gate_m))
+        node.gate_m = max(doubt_m, parameters.gate_m)
 
     def _associate_and_solve(self) -> tuple[Ties, Solution]:
         """Alternate between deciding what points are and where the poses are best."""

@@ -381,7 +381,6 @@ def test_who_drives_on_where_the_map_shows_nothing_is_followed_by_what_is_seen_t
         {"min_episode_length": 1},
         {"max_episode_length": 5},
         {"stf_separations": ()},
-        {"ltf_widest_gate_m": 0.1},
         {"stf_max_angle_rad": 2.0},
     ],
 )
