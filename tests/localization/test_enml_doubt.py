@@ -106,7 +106,22 @@ def test_what_is_strange_is_so_until_the_last_familiar_scan_is_too_far_back() ->
         told.append(strangeness.compare(episode_of(*seen_so_far), np.inf))
     assert min(each.strange for each in told[:2]) > 5.0
     assert [each.is_with_familiar for each in told[:4]] == [True, True, False, True]
+    assert [each.is_sudden for each in told[:3]] == [True, False, False]
     assert told[2].strange < 0.0, "it is beside one that was strange itself"
+
+
+def test_a_few_points_that_are_not_recognized_tell_less_than_many() -> None:
+    on = np.array([0.2, 0.0, 0.0])
+    episode = episode_of((ROOM, HERE), (np.vstack([ROOM, PERSON]), on))
+    earlier, later = episode.nodes
+    persons = np.flatnonzero(~recognized_points(earlier, later, on, EnmlParameters()))
+    told = []
+    for count in (0, 1, len(persons)):
+        later.is_ltf = np.ones(len(later.scan_points), dtype=np.bool_)
+        later.is_ltf[persons[:count]] = False
+        told.append(Strangeness(EnmlParameters()).compare(episode, np.inf).strange)
+    assert told == sorted(told)
+    assert told[2] > told[1] + 1.0
 
 
 def test_of_scans_that_are_too_far_apart_nothing_is_said() -> None:
