@@ -9,7 +9,7 @@ _LEAST_SPREAD = 0.05
 changed: points are few."""
 _SURPRISES, _SURPRISE_SPREAD = 0.017, 0.5
 """So often more changes than usual, half-normal with this scale: somebody steps by, or a chair is
-moved (ours: among fhw's crowd 1.4 % of scans by more than 0.5 and 0.2 % by more than 0.7; in 15
+moved (ours: among fhw's crowd 1.4 % of scans by more than 0.5 and 0.2 % by more than 0.7; in 14
 other drives at most 0.3 % by more than either)."""
 _HALF_NORMAL = (2.0 / pi) ** 0.5
 _FIRST_SCANS = 8.0
