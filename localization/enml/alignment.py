@@ -5,8 +5,6 @@ first laid over a small grid of what is around, map and recent scans alike, at e
 lattice around the prediction.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,18 +31,6 @@ _MIN_SHIFT_M = 0.3
 _MAX_SHIFT_M = 0.6
 
 
-@dataclass(frozen=True, slots=True)
-class Aligned:
-    """The best place of the lattice, and by how much it beats the prediction (log-likelihood).
-
-    `fit` is the share of the near points that lie there on the map or on what was seen just before.
-    """
-
-    pose: Poses
-    gain: float
-    fit: float
-
-
 class Aligner:
     """Lays scans over a map, and over what was seen just before."""
 
@@ -65,8 +51,8 @@ class Aligner:
         deviations: Poses,
         *,
         on_map: bool = True,
-    ) -> Aligned:
-        """Search around a prediction.
+    ) -> Poses:
+        """The best place of a lattice around a prediction.
 
         `recent` are points (n, 2) of the last scans in the map's frame, `points` those of the
         newest in the robot's. `deviations` are those of odometry along x, y (metres) and heading
@@ -74,7 +60,7 @@ class Aligner:
         """
         near = points[np.hypot(*points.T) < _MAX_REACH_M]
         if not len(near):
-            return Aligned(predicted, 0.0, 1.0)
+            return predicted
         near = near[:: len(near) // _MAX_POINTS + 1]
         reach_m = float(np.percentile(np.hypot(*near.T), 80))
         shift_m = float(np.clip(_DEVIATIONS * deviations[:2].max(), _MIN_SHIFT_M, _MAX_SHIFT_M))
@@ -86,15 +72,13 @@ class Aligner:
         scores = np.empty((len(turns), len(shifts), len(shifts)))
         center = (predicted[:2] - origin) / self._cell_m
         score_lattice(grid, center, turned / self._cell_m, len(shifts) // 2, scores)
-        fit = float(scores.max()) / len(near)
         scores *= self._parameters.alignment_weight * len(points) / len(near)
         scores -= _doubt(turns, shifts, deviations)
         best = np.unravel_index(int(scores.argmax()), scores.shape)
-        gain = scores[best] - scores[tuple(size // 2 for size in scores.shape)]
         moved = np.array([shifts[best[1]], shifts[best[2]], turns[best[0]]])
-        pose = predicted + moved
+        pose: Poses = predicted + moved
         pose[2] = wrap_angle(pose[2])
-        return Aligned(pose, float(gain), fit)
+        return pose
 
     def _surroundings(
         self, recent: Floats, center: Floats, shift_m: float, on_map: bool

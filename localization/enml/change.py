@@ -13,7 +13,7 @@ from mend.localization.enml.episode import Episode
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import PoseNode
 from mend.localization.enml.problem import Floats
-from mend.localization.enml.usual_change import UsualChange
+from mend.localization.enml.usual_change import UsualChange, log_density_of_carried
 from mend.localization.pose import Poses, compose, relative, transform, wrap
 
 _THROUGH_M = 0.3
@@ -24,8 +24,6 @@ _LEAST_COMPARED = 20
 LEAST_RETURNS = 40
 """Fewer returns say nothing about where a robot is."""
 _COMPARED_WITHIN_M = 1.2
-_OFF_MAP_TELLS = 0.2
-"""Where less of a scan is on no map, all of it is to be recognized."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +35,8 @@ class Comparison:
     is_with_familiar: bool = True
     """Whether the earlier one was familiar itself, or none is; who was carried before a strange
     one sees the same again as there, too."""
+    is_sudden: bool = False
+    """Whether it is the first strange one after one that was familiar."""
 
 
 _NOTHING = Comparison(0.0)
@@ -58,12 +58,10 @@ class Strangeness:
         """The newest scan beside the last familiar one.
 
         Nothing can be said where they are farther apart than `within_m` (and radians, together).
-        Only what is on no map is to be recognized, as walls look the same in many places. What
-        changed, less what is recognized, is more the farther the scans are apart (metres and
-        radians together), and for who was carried some of it all is as likely as any other. The
-        scan is learned from as far as it is `news` (0 to 1).
+        Only what is on no map is to be recognized, as walls look the same in many places; for who
+        was carried what changed less what is recognized is as likely anything from 0 on. The scan
+        is learned from as far as it is `news` (0 to 1).
         """
-        its = self._parameters
         before = self._compared_with(episode)
         if before is None:
             return _NOTHING
@@ -72,10 +70,11 @@ class Strangeness:
             return _NOTHING
         identity = episode.nodes[before].identity
         change = self._change(episode, before)
-        usual = change - its.strange_per_m * apart
-        strange = min(change / its.carried_spread, 0.0) - self._usual.log_density(usual)
-        self._usual.learn(usual, news)
-        compared = Comparison(strange, self._familiar in (None, identity))
+        strange = log_density_of_carried(change) - self._usual.log_density(change)
+        self._usual.learn(change, news)
+        compared = Comparison(
+            strange, self._familiar in (None, identity), strange > 0.0 and self._familiar is None
+        )
         self._familiar = identity if strange > 0.0 else None
         return compared
 
@@ -84,10 +83,10 @@ class Strangeness:
         earlier, later = episode.nodes[before], episode.nodes[-1]
         there, here = episode.poses[before], episode.poses[-1]
         recognized = recognized_points(earlier, later, relative(there, here), self._parameters)
-        off_map = ~later.is_ltf
-        if off_map.sum() >= LEAST_RETURNS and off_map.mean() > _OFF_MAP_TELLS:
-            recognized = recognized[off_map]
-        return changed(earlier, there, later, here) - float(recognized.mean())
+        of_those = recognized[~later.is_ltf]
+        # Laplace's rule of succession: of a few points the share is hardly known.
+        share = (1.0 + float(of_those.sum())) / (2.0 + len(of_those))
+        return changed(earlier, there, later, here) - share
 
     def _compared_with(self, episode: Episode) -> int | None:
         """The last familiar pose, unless it is too far back, or else the last that saw enough."""

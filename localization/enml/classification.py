@@ -7,7 +7,8 @@ import numpy as np
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import LtfMatches, PoseNode
 from mend.localization.enml.problem import Floats, Indices
-from mend.localization.pose import Poses, compose, transform, turn, wrap_angle
+from mend.localization.enml.settling import has_moved
+from mend.localization.pose import Poses, compose, transform, turn
 from mend.maps.compiled import compiled
 from mend.maps.segment_grid import SegmentGrid, cast_rays
 
@@ -47,11 +48,7 @@ class LongTermFeatures:
         before = node.cast_pose
         if before is None or node.gate_m != node.cast_gate_m:
             return False
-        moved_m = np.hypot(pose[0] - before[0], pose[1] - before[1])
-        turned_rad = abs(wrap_angle(pose[2] - before[2]))
-        return bool(
-            moved_m < self._parameters.settled_m and turned_rad < self._parameters.settled_rad
-        )
+        return not has_moved(pose - before)
 
 
 def look_at(

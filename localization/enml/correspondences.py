@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import PoseNode
 from mend.localization.enml.problem import Floats, Indices, StfConstraints
+from mend.localization.enml.settling import has_moved
 from mend.localization.points import ScanPoints
-from mend.localization.pose import Poses, relative, wrap
+from mend.localization.pose import Poses, relative
 
 _MOST_PER_PAIR = 50
 """More points on the same things say little more about how two poses stand to each other."""
@@ -95,11 +96,7 @@ class ShortTermFeatures:
         """Which pairs stand otherwise to each other than when their matches were found."""
         known = [self._known.get(name) for name in names]
         before = [_NOWHERE if each is None else each.motion for each in known]
-        change = motions - np.array(before).reshape(-1, 3)
-        return np.asarray(
-            (np.hypot(change[:, 0], change[:, 1]) > self._parameters.settled_m)
-            | (np.abs(wrap(change[:, 2])) > self._parameters.settled_rad)
-        )
+        return has_moved(motions - np.array(before).reshape(-1, 3))
 
     def _nearest(self, earlier: PoseNode, later: PoseNode, motion: Poses) -> StfMatches:
         a, b = earlier.scan_points, later.scan_points

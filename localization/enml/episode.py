@@ -56,9 +56,7 @@ class Episode:
             travel.add(step)
             self.poses = self.poses[:-1]
         its = self._parameters
-        node = PoseNode.of(
-            next(self._identities), scan, scan_points, travel, its.ltf_gate_m, its.stf_gate_m
-        )
+        node = PoseNode.of(next(self._identities), scan, scan_points, travel, its.gate_m)
         self.nodes.append(node)
         self.poses = np.vstack([self.poses, predicted])
 
@@ -79,7 +77,7 @@ class Episode:
         """The constraints on the poses from `first` to `last` (exclusive; all if None)."""
         nodes = self.nodes[first:last]
         parameters = self._parameters
-        width_m = parameters.robust_width_m
+        width_m = parameters.laser_std_m
         moves = [node.travel for node in nodes[1:]]
         return PoseGraph(
             prior=self.prior,
@@ -89,7 +87,7 @@ class Episode:
                 -1, 3, 3
             ),
             odometry_width=parameters.odometry_robust_width,
-            ltf=_ltf_constraints(nodes, width_m / parameters.ltf_gate_m),
+            ltf=_ltf_constraints(nodes, width_m / parameters.gate_m),
             stf=stf_constraints(ties, width_m),
             ltf_weight=parameters.ltf_correlation / parameters.laser_std_m**2,
             stf_weight=parameters.stf_correlation / parameters.laser_std_m**2,

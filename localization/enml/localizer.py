@@ -13,7 +13,7 @@ from mend.localization.enml.anywhere import Anywhere
 from mend.localization.enml.change import LEAST_RETURNS, Strangeness
 from mend.localization.enml.classification import LongTermFeatures, look_at
 from mend.localization.enml.global_search import Region, same_place
-from mend.localization.enml.lost_measure import LostMeasure
+from mend.localization.enml.lost_measure import LOST_ABOVE, LostMeasure
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.pose_node import PoseNode
 from mend.localization.enml.problem import Floats
@@ -84,7 +84,7 @@ class EnmlLocalizer:
         covariance = np.asarray(covariance, dtype=np.float64) + _LEAST_VARIANCE * np.eye(3)
         self._stream = ScanStream()
         self._sight = Sight(self._parameters)
-        self._unweighed = self._parameters.news_after_m
+        self._unweighed = self._parameters.min_translation_m
         self._searched_m = self._probation_m = 0.0
         self._off_map_m = np.inf
         self._recovery.forget()
@@ -166,7 +166,7 @@ class EnmlLocalizer:
         classes[node.is_ltf] = PointClass.LTF
         lost = self._measure.probability
         if self._is_lost:
-            lost = self._parameters.lost_above if self._is_in_doubt else 1.0
+            lost = LOST_ABOVE if self._is_in_doubt else 1.0
         return Estimate(
             pose,
             covariance,
@@ -182,19 +182,20 @@ class EnmlLocalizer:
         if len(episode.nodes[-1].ranges_m) < LEAST_RETURNS:
             return
         # Who is lost begins anew only for what is sure, as a look at all since then is worth much.
-        within_m = self._parameters.news_after_m if self._is_lost else np.inf
+        within_m = self._parameters.min_translation_m if self._is_lost else np.inf
         its = self._parameters
-        news = 0.0 if self._is_lost else min(self._unweighed / its.news_after_m, 1.0)
+        news = 0.0 if self._is_lost else min(self._unweighed / its.min_translation_m, 1.0)
         beside = self._strangeness.compare(episode, within_m, news)
         elsewhere = 0.0
         if not self._is_lost:
             place = self._against_place(episode.nodes[-1])
             elsewhere = its.map_counts * (place - its.map_misleads)
-        # Whoever stands may be carried, too: a strange scan is news, however far it drove.
-        least_m = its.news_after_m if beside.strange > 0.0 else 0.0
+        # Whoever stands may be carried, too, and the first scan there is all news; the next ones
+        # say much the same again.
+        least_m = its.min_translation_m if beside.is_sudden else 0.0
         self._measure.weigh(max(self._unweighed, least_m), beside, elsewhere)
         self._unweighed = 0.0
-        if self._measure.probability > its.lost_above:
+        if self._measure.probability > LOST_ABOVE:
             self._lose(drifted=beside.strange <= 0.0 and self._measure.is_by_map)
 
     def _against_place(self, node: PoseNode) -> float:
@@ -262,7 +263,7 @@ class EnmlLocalizer:
         """Search the map every so often; take the episode to where it clearly belongs."""
         track, recovery = self._track, self._recovery
         at_once = self._search_at_once
-        due = self._searched_m >= self._parameters.recovery_every_m
+        due = self._searched_m >= self._parameters.min_translation_m
         if at_once or (due and not recovery.is_searching):
             self._searched_m = 0.0
             followed = track.episode if track.by is By.MAP else None

@@ -11,6 +11,8 @@ from mend.localization.enml.change import Comparison
 from mend.localization.enml.parameters import EnmlParameters
 
 _MOST_ODDS = 1e6
+LOST_ABOVE = 0.5
+"""A robot says that it is lost where that is more probable than not."""
 
 
 class LostMeasure:
@@ -48,9 +50,9 @@ class LostMeasure:
         counts for more than the parameters say, of both together.
         """
         its = self._parameters
-        news, most = min(driven_m / its.news_after_m, 1.0), its.tells_at_most
-        strange = max(min(beside.strange, most), -most)
+        news, most = min(driven_m / its.min_translation_m, 1.0), its.tells_at_most
         elsewhere = max(min(elsewhere, most), -its.fitting_tells_at_most)
+        together = max(min(beside.strange + elsewhere, most), -most)
         if not beside.is_with_familiar:
             self._close()
         self._since += its.carried_per_m * driven_m
@@ -58,8 +60,8 @@ class LostMeasure:
         fits = exp(news * elsewhere)
         self._before = min(self._before * fits, _MOST_ODDS)
         self._by_map = min(self._by_map * fits, _MOST_ODDS)
-        self._since = min(self._since * exp(news * min(strange + elsewhere, most)), _MOST_ODDS)
-        if strange <= 0.0:
+        self._since = min(self._since * exp(news * together), _MOST_ODDS)
+        if beside.strange <= 0.0:
             self._close()
 
     def _close(self) -> None:

@@ -30,8 +30,8 @@ class Travel:
         floor_m = parameters.odometry_min_std_m
         return np.array(
             [
-                floor_m + parameters.odometry_radial_rate * self.path_m,
-                floor_m + parameters.odometry_tangential_rate * self.path_m,
+                floor_m + parameters.odometry_rate * self.path_m,
+                floor_m + parameters.odometry_rate * self.path_m,
                 parameters.odometry_min_std_rad
                 + parameters.odometry_angular_rate * self.turned_rad
                 + parameters.odometry_drift_rad_per_m * self.path_m,

@@ -13,14 +13,14 @@ class EnmlParameters:
     """All angles in radians, distances in metres. Raises `ValueError` for what makes no sense."""
 
     min_translation_m: float = 0.3
-    """A pose stays in the episode once the robot has moved this far since the last (published)."""
+    """A pose stays in the episode once the robot has moved this far since the last (published).
+    Scans that are closer together say much the same: as evidence of having been carried they count
+    for less, and a lost robot searches again only after so much."""
     min_rotation_rad: float = radians(5.0)
     """... or has turned this far (published)."""
 
-    odometry_radial_rate: float = 0.1
-    """Standard deviation along the motion, per metre moved (published)."""
-    odometry_tangential_rate: float = 0.1
-    """Standard deviation across the motion, per metre moved (published)."""
+    odometry_rate: float = 0.1
+    """Standard deviation along the motion and across, per metre moved (published)."""
     odometry_angular_rate: float = 0.15
     """Standard deviation of the heading, per radian turned (ours; published 0.1)."""
     odometry_drift_rad_per_m: float = radians(1.0)
@@ -35,22 +35,18 @@ class EnmlParameters:
     (ours: wheels that slip are wrong by more than noise)."""
 
     laser_std_m: float = 0.05
-    """Standard deviation of a point's distance from what it was measured on (published)."""
-    robust_width_m: float = 0.05
-    """Distance at which a point's pull is half of what plain least squares gives it (ours)."""
+    """Standard deviation of a point's distance from what it was measured on (published), and where
+    its pull is half of what plain least squares gives it (ours)."""
 
-    ltf_gate_m: float = 0.15
-    """A point farther from the map's line than this is no long-term feature (ours; published 0.25:
-    among furniture, too much of what stands near walls is then taken for them)."""
-    ltf_widest_gate_m: float = 1.0
-    """Where the gate starts when the prediction is at its most uncertain (ours)."""
+    gate_m: float = 0.15
+    """A point farther from the map's line than this is no long-term feature, and two points farther
+    apart are not the same thing (published for the latter, for lines 0.25: among furniture, too
+    much of what stands near walls is then taken for them)."""
     ltf_max_angle_rad: float = radians(35.0)
     """Largest angle between a point's normal and its line's (published)."""
     ltf_correlation: float = 1.0 / 20.0
     """How much one of many correlated rays counts (ours; published 1/50 over 1,000 rays)."""
 
-    stf_gate_m: float = 0.15
-    """Two points farther apart than this are not the same thing (published)."""
     stf_max_angle_rad: float = radians(25.0)
     """Largest angle between the normals of two corresponding points (published)."""
     stf_correlation: float = 1.0 / 10.0
@@ -68,44 +64,24 @@ class EnmlParameters:
     """A robot that has driven this far without seeing anything is lost (ours)."""
 
     min_episode_length: int = 10
-    """Poses that are kept even if nothing ties the newest to them (published)."""
+    """Poses that are kept even if nothing ties the newest to them (published), and so many of the
+    newest that the pre-alignment lays a scan over (ours)."""
     max_episode_length: int = 25
-    """Poses after which the oldest is let go whatever ties it (ours; published 80)."""
+    """Poses after which the oldest is let go whatever ties it (ours; published 80), and about so
+    many tell how much usually changes around the robot."""
     alignment_weight: float = 0.25
     """How much one of many correlated rays counts in the pre-alignment (ours)."""
-    alignment_scans: int = 4
-    """How many of the last poses the pre-alignment lays the newest scan over (ours)."""
-    alignment_min_gain: float = 1.0
-    """The prediction is kept unless another place is likelier by this much (ours; logarithm)."""
-
-    association_rounds: int = 4
-    """At most this many rounds of association and optimization per update (published)."""
-    solver_iterations: int = 10
-    """Most Levenberg-Marquardt steps per round (published 30, with a slower loss)."""
-    settled_m: float = 0.01
-    """A pose that moved less keeps its ray cast and its correspondences (ours)."""
-    settled_rad: float = radians(0.25)
-    """... and turned less (ours)."""
 
     carried_per_m: float = 1e-3
     """How often a robot is carried away, or loses its way, per metre driven: the prior."""
-    news_after_m: float = 0.3
-    """Scans that are closer together than this (metres and radians together) count for less, as
-    they say much the same (ours)."""
     tells_at_most: float = 5.0
-    """... and none changes the logarithm of the odds by more than this (ours: one alone is not
+    """No scan changes the logarithm of the odds by more than this (ours: one alone is not
     enough)."""
     recognized_share: float = 0.6
     """So much of what is on no map, less what changed, is recognized from a scan just before, at
-    first (ours: the median of made-up drives is 0.7, that of logs 0.3 to 0.7)..."""
+    first (ours: 0.2 to 0.7 in made-up drives and logs, the latter where much is on no map)..."""
     recognized_spread: float = 0.2
-    """... with this standard deviation (ours: 0.1 to 0.3)..."""
-    strange_per_m: float = 0.2
-    """... and so much less per metre and radian that the scans are apart (ours)..."""
-    usual_scans: float = 30.0
-    """... and later as it was in about so many scans before (ours)."""
-    carried_spread: float = 0.1
-    """Who was carried recognizes hardly more than has changed: the mean of by how much (ours)."""
+    """... with this standard deviation (ours: 0.1 to 0.25); later as it was of late."""
     map_counts: float = 0.1
     """How much a scan's likelihood on the map counts..."""
     map_misleads: float = 20.0
@@ -117,19 +93,12 @@ class EnmlParameters:
     off_map_for_m: float = 40.0
     """A robot that has driven this far where the map shows nothing is lost (ours: what it sees
     twice leads it a metre astray in some 100 m)."""
-    lost_above: float = 0.5
-    """A robot says that it is lost where that is more probable than this."""
-    alignment_believed_above: float = 0.55
-    """The pre-alignment is followed if it lays more than this share of a scan on something (ours:
-    0.61 to 0.88 in the worst hundredth of drives)."""
     found_above: float = 10.0
     """How much likelier what is seen has to be at the place where a lost robot is found than
     anywhere (ours; logarithm per scan)."""
     known_within_m: float = 2.5
     """A robot that is put down with a wider standard deviation may be anywhere (published as the
     reach of its search)."""
-    recovery_every_m: float = 0.5
-    """A lost robot looks for its place again after driving this far (ours)."""
     recovery_lead: float = 5.0
     """How much likelier the place has to be than all others, at first (ours; logarithm per
     scan)..."""
@@ -153,12 +122,8 @@ class EnmlParameters:
                 "min_episode_length must be at least 2 and at most max_episode_length "
                 f"({self.max_episode_length}), not {self.min_episode_length}"
             )
-        if self.association_rounds < 1 or self.solver_iterations < 1:
-            raise ValueError("association_rounds and solver_iterations must be at least 1")
         if not self.stf_separations or min(self.stf_separations) < 1:
             raise ValueError("stf_separations must name at least one pose back, counted from 1")
-        if self.ltf_widest_gate_m < self.ltf_gate_m:
-            raise ValueError("ltf_widest_gate_m must not be below ltf_gate_m")
         for name in ("ltf_max_angle_rad", "stf_max_angle_rad"):
             if getattr(self, name) > pi / 2:
                 raise ValueError(f"{name} must not be above a right angle")

@@ -70,11 +70,10 @@ class PoseNode:
         scan_points: ScanPoints,
         travel: Travel,
         gate_m: float,
-        alike_within_m: float,
     ) -> "PoseNode":
         """What one scan contributes to the episode.
 
-        Points of two scans within `alike_within_m` of each other may be the same thing.
+        Points of two scans within `gate_m` of each other may be the same thing.
         """
         return cls(
             identity,
@@ -85,7 +84,7 @@ class PoseNode:
             scan.sensor_offset,
             travel,
             gate_m,
-            PointBuckets.of(scan_points, alike_within_m),
+            PointBuckets.of(scan_points, gate_m),
         )
 
     @property

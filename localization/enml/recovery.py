@@ -38,7 +38,7 @@ _SCANS_POLISHED = 3
 _SCANS_WEIGHED = 6
 _LEAST_DOUBT = 0.5
 """The share of the lead that is always needed, and all that is where the robot is followed."""
-_PIECES = 10
+_PIECES = 8
 """So many pieces of work an update does..."""
 _RAYS_PER_PIECE_M = 850_000.0
 """... of so many metres of rays over the map, two or three milliseconds..."""
@@ -180,7 +180,7 @@ class Recovery:
         """The places of the lattice that look right, each where what is seen fits best."""
         wide = yield from self._lattice.candidates(seen.points, self._everywhere, _CANDIDATES)
         merits = np.zeros(len(wide))
-        for piece in self._portions(wide, seen.glance, 2):
+        for piece in self._portions(wide, seen.glance):
             glances(self._grid, seen.glance, wide[piece], merits[piece])
             yield
         places = wide[np.argsort(-merits, kind="stable")[:_CLIMBERS]]
@@ -208,7 +208,7 @@ class Recovery:
         return max([found, *weighed], key=lambda each: each.score)
 
     def _polish(self, places: Floats, looks: Looks, gates_m: Floats) -> Work[None]:
-        for piece in self._portions(places, looks, 2 * len(gates_m)):
+        for piece in self._portions(places, looks, len(gates_m)):
             polish(self._grid, looks, gates_m, self._cos_max_angle, places[piece])
             yield
 
@@ -220,17 +220,22 @@ class Recovery:
 
     def _weigh(self, places: Floats, looks: Looks) -> Work[list[Found]]:
         """Places with what speaks for each."""
+        anywhere = self._anywhere.mean_log_likelihood(looks)
+        yield
         scores = np.zeros(len(places))
         for piece in self._portions(places, looks):
             log_likelihoods(self._grid, looks, places[piece], self._anywhere.model, scores[piece])
             yield
-        scores -= self._anywhere.mean_log_likelihood(looks)
+        scores -= anywhere
         return [Found(*each) for each in zip(places, scores.tolist(), strict=True)]
 
     def _portions(self, places: Floats, looks: Looks, times: int = 1) -> Iterator[slice]:
-        """Pieces of work: for each place all beams of some looks are cast, so many times."""
+        """Pieces of work: for each place all beams of some looks are cast, so many times.
+
+        What is made of a ray takes about as long as to cast it.
+        """
         ray_m = _RAY_BEGINS_M + self._anywhere.mean_range_m
-        rays = times * max(len(looks.bearings), 1)
+        rays = 2 * times * max(len(looks.bearings), 1)
         return pieces(len(places), int(_RAYS_PER_PIECE_M / (rays * ray_m)))
 
     def _clear_winner(

@@ -12,10 +12,16 @@ from mend.localization.enml.episodes import episode_start
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.enml.prior import whitening_of
 from mend.localization.enml.problem import Floats
+from mend.localization.enml.settling import has_moved
 from mend.localization.enml.solver import Linearize, Solution, solve
 from mend.localization.points import ScanPoints
 from mend.localization.pose import Poses, transform, wrap
 from mend.localization.scan import Scan
+
+_MOST_ROUNDS = 4
+"""Of association and optimization per update (published); they end once no pose has moved."""
+_MOST_STEPS = 10
+"""Of Levenberg-Marquardt per round (published 30, with a slower loss)."""
 
 
 class By(Enum):
@@ -72,7 +78,7 @@ class Track:
         self.by = By.MAP
         self.episode.move(newest, np.diag(1.0 / deviations))
         for node in self.episode.nodes:
-            node.gate_m = self._parameters.ltf_gate_m
+            node.gate_m = self._parameters.gate_m
         return self._settle()
 
     def _settle(self) -> Floats:
@@ -94,20 +100,17 @@ class Track:
         recent = [
             transform(pose, node.scan_points.points)
             for node, pose in list(zip(nodes[:-1], poses, strict=False))[
-                -parameters.alignment_scans :
+                -parameters.min_episode_length :
             ]
         ]
         newest = nodes[-1]
-        aligned = self._aligner.align(
+        poses[-1] = self._aligner.align(
             np.concatenate([np.zeros((0, 2)), *recent]),
             newest.scan_points.points,
             poses[-1],
             newest.travel.deviations(parameters),
             on_map=self.by is By.MAP,
         )
-        believed = aligned.fit >= parameters.alignment_believed_above
-        if believed and aligned.gain > parameters.alignment_min_gain:
-            poses[-1] = aligned.pose
 
     def _set_first_gate(self) -> None:
         """Open the newest pose's gate as wide as its prediction is uncertain."""
@@ -117,25 +120,19 @@ class Track:
         points = node.scan_points.points
         reach_m = float(np.median(np.hypot(*points.T))) if len(points) else 0.0
         doubt_m = 2.0 * float(np.hypot(max(along_m, across_m), heading_rad * reach_m))
-        node.gate_m = float(np.clip(doubt_m, parameters.ltf_gate_m, parameters.ltf_widest_gate_m))
+        node.gate_m = max(doubt_m, parameters.gate_m)
 
     def _associate_and_solve(self) -> tuple[Ties, Solution]:
         """Alternate between deciding what points are and where the poses are best."""
-        parameters = self._parameters
         episode = self.episode
-        for _ in range(parameters.association_rounds):
+        for _ in range(_MOST_ROUNDS):
             changed = self._classify()
             ties = self._short_term.match(episode.nodes, episode.poses, changed)
-            solution = solve(
-                episode.problem(ties),
-                episode.poses,
-                parameters.solver_iterations,
-                self._linearize,
-            )
+            solution = solve(episode.problem(ties), episode.poses, _MOST_STEPS, self._linearize)
             moved = solution.poses - episode.poses
             episode.poses = solution.poses
             narrowed = self._narrow_gates()
-            if not narrowed and self._is_settled(moved):
+            if not narrowed and not has_moved(moved).any():
                 break
         episode.poses[:, 2] = wrap(episode.poses[:, 2])
         return ties, solution
@@ -154,13 +151,7 @@ class Track:
     def _narrow_gates(self) -> bool:
         narrowed = False
         for node in self.episode.nodes:
-            narrower_m = max(node.gate_m / 2.0, self._parameters.ltf_gate_m)
+            narrower_m = max(node.gate_m / 2.0, self._parameters.gate_m)
             narrowed |= narrower_m < node.gate_m
             node.gate_m = narrower_m
         return narrowed
-
-    def _is_settled(self, moved: Floats) -> bool:
-        return bool(
-            np.hypot(moved[:, 0], moved[:, 1]).max() < self._parameters.settled_m
-            and np.abs(moved[:, 2]).max() < self._parameters.settled_rad
-        )

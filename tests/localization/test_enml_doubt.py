@@ -23,7 +23,7 @@ def seen(world: np.ndarray, pose: Poses) -> PoseNode:
     angles = np.linspace(-2.0, 2.0, 121)
     ranges, _ = cast(world, float(pose[0]), float(pose[1]), pose[2] + angles, 20.0)
     scan = Scan(ranges, -2.0, float(angles[1] - angles[0]), 20.0)
-    return PoseNode.of(0, scan, scan_points(scan), Travel(), 0.15, 0.15)
+    return PoseNode.of(0, scan, scan_points(scan), Travel(), 0.15)
 
 
 def test_driving_on_changes_nothing() -> None:
@@ -66,7 +66,7 @@ def test_what_faces_another_way_is_not_recognized() -> None:
     straight, slanted = ([[2.0, -1.0, 2.0 + lean, 1.0]] for lean in (0.0, 2.0))
     before, now = (seen(np.array(wall), HERE) for wall in (straight, slanted))
     gaps = now.scan_points.points[:, None] - before.scan_points.points
-    near = np.hypot(*gaps.T).min(axis=0) < EnmlParameters().stf_gate_m
+    near = np.hypot(*gaps.T).min(axis=0) < EnmlParameters().gate_m
     assert near.any()
     assert not recognized_points(before, now, HERE, EnmlParameters())[near].any()
 
@@ -106,7 +106,22 @@ def test_what_is_strange_is_so_until_the_last_familiar_scan_is_too_far_back() ->
         told.append(strangeness.compare(episode_of(*seen_so_far), np.inf))
     assert min(each.strange for each in told[:2]) > 5.0
     assert [each.is_with_familiar for each in told[:4]] == [True, True, False, True]
+    assert [each.is_sudden for each in told[:3]] == [True, False, False]
     assert told[2].strange < 0.0, "it is beside one that was strange itself"
+
+
+def test_a_few_points_that_are_not_recognized_tell_less_than_many() -> None:
+    on = np.array([0.2, 0.0, 0.0])
+    episode = episode_of((ROOM, HERE), (np.vstack([ROOM, PERSON]), on))
+    earlier, later = episode.nodes
+    persons = np.flatnonzero(~recognized_points(earlier, later, on, EnmlParameters()))
+    told = []
+    for count in (0, 1, len(persons)):
+        later.is_ltf = np.ones(len(later.scan_points), dtype=np.bool_)
+        later.is_ltf[persons[:count]] = False
+        told.append(Strangeness(EnmlParameters()).compare(episode, np.inf).strange)
+    assert told == sorted(told)
+    assert told[2] > told[1] + 1.0
 
 
 def test_of_scans_that_are_too_far_apart_nothing_is_said() -> None:

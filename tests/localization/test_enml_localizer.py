@@ -377,12 +377,10 @@ def test_who_drives_on_where_the_map_shows_nothing_is_followed_by_what_is_seen_t
     "wrong",
     [
         {"laser_std_m": 0.0},
-        {"ltf_gate_m": float("nan")},
+        {"gate_m": float("nan")},
         {"min_episode_length": 1},
         {"max_episode_length": 5},
-        {"association_rounds": 0},
         {"stf_separations": ()},
-        {"ltf_widest_gate_m": 0.1},
         {"stf_max_angle_rad": 2.0},
     ],
 )

@@ -9,7 +9,7 @@ from mend.localization.beam_model import BeamModel, BeamModelParameters
 from mend.localization.enml.anywhere import Anywhere
 from mend.localization.enml.change import Comparison
 from mend.localization.enml.global_search import Region
-from mend.localization.enml.lost_measure import LostMeasure
+from mend.localization.enml.lost_measure import LOST_ABOVE, LostMeasure
 from mend.localization.enml.parameters import EnmlParameters
 from mend.localization.scan import Scan
 from mend.maps.ray_cast import cast
@@ -37,14 +37,14 @@ def test_with_nothing_to_tell_the_prior_adds_up_over_the_way() -> None:
 def test_no_scan_decides_alone_and_some_in_a_row_do(strange: float, elsewhere: float) -> None:
     measure = LostMeasure(ITS)
     measure.weigh(1.0, Comparison(strange), elsewhere)
-    assert measure.probability < ITS.lost_above
+    assert measure.probability < LOST_ABOVE
     measure.weigh(1.0, Comparison(strange), elsewhere)
-    assert measure.probability > ITS.lost_above
+    assert measure.probability > LOST_ABOVE
 
 
 def test_scans_from_hardly_different_places_count_for_little() -> None:
     near, far = LostMeasure(ITS), LostMeasure(ITS)
-    for measure, apart_m in ((near, 0.01), (far, ITS.news_after_m)):
+    for measure, apart_m in ((near, 0.01), (far, ITS.min_translation_m)):
         measure.begin(0.5)
         measure.weigh(apart_m, Comparison(0.0), 3.0)
     assert near.probability < 0.53
@@ -57,20 +57,20 @@ def test_what_looks_familiar_says_nothing_of_having_been_carried_before() -> Non
     measure = LostMeasure(ITS)
     measure.begin(0.4)
     for _ in range(20):
-        measure.weigh(ITS.news_after_m, Comparison(-10.0), 0.0)
+        measure.weigh(ITS.min_translation_m, Comparison(-10.0), 0.0)
     assert measure.probability >= 0.4
     strange = LostMeasure(ITS)
-    strange.weigh(ITS.news_after_m, Comparison(10.0), 0.0)
+    strange.weigh(ITS.min_translation_m, Comparison(10.0), 0.0)
     before = strange.probability
-    strange.weigh(ITS.news_after_m, Comparison(-10.0), 0.0)
+    strange.weigh(ITS.min_translation_m, Comparison(-10.0), 0.0)
     assert strange.probability < before / 5.0
 
 
 def test_what_is_strange_is_so_however_well_it_fits_the_map() -> None:
     measure = LostMeasure(ITS)
     for _ in range(3):
-        measure.weigh(ITS.news_after_m, Comparison(10.0), -1e9)
-    assert measure.probability > ITS.lost_above
+        measure.weigh(ITS.min_translation_m, Comparison(10.0), -1e9)
+    assert measure.probability > LOST_ABOVE
 
 
 def test_what_is_familiar_beside_a_strange_scan_says_nothing_of_before_that() -> None:
@@ -89,7 +89,7 @@ def test_it_knows_whether_the_map_alone_speaks_against_here() -> None:
     by_map, carried = LostMeasure(ITS), LostMeasure(ITS)
     carried.weigh(1.0, Comparison(10.0), 0.0)
     for measure in (by_map, carried):
-        while measure.probability < ITS.lost_above:
+        while measure.probability < LOST_ABOVE:
             measure.weigh(1.0, Comparison(-10.0, is_with_familiar=False), 2.0)
     assert by_map.is_by_map
     assert not carried.is_by_map

@@ -45,7 +45,7 @@ def test_where_much_changes_all_the_time_that_is_no_surprise() -> None:
 
 
 def test_what_was_usual_long_ago_is_forgotten() -> None:
-    long = int(5 * ITS.usual_scans)
+    long = 5 * ITS.max_episode_length
     assert after(*[0.2] * 30, *[-0.7] * long).log_density(0.2) < -3.0
 
 
