@@ -116,9 +116,9 @@ class Looked(Message):
     blind: Sentence | None = None
     felt: FeltLoad | None = None
     led_round: bool = False
+    brought: bool | None = None
     jpeg: str | None = None
     detection: Detection | None = None
-    brought: bool | None = None
 
 
 class WayFound(Message):

@@ -20,6 +20,7 @@ export function StepForm({ asked, places, here, typed, answered }: StepFormProps
   useEffect(() => heading.current?.focus(), [step]);
   if (step === null) return null;
   const answer = (value: string) => answered({ ...asked, answers: [...asked.answers, value] });
+  const origin = asked.kind === "transport" ? asked.answers[1] : here;
   return (
     <>
       <h2 ref={heading} tabIndex={-1}>
@@ -30,7 +31,7 @@ export function StepForm({ asked, places, here, typed, answered }: StepFormProps
       ) : (
         <PlacePad
           key={step}
-          places={step === "destination" && asked.kind === "transport" ? places.filter((each) => each !== asked.answers[1]) : places}
+          places={step === "destination" ? places.filter((each) => each !== origin) : places}
           here={step === "origin" || step === "place" ? here : null}
           floor={here === null ? null : here.slice(0, here.indexOf("/"))}
           choose={answer}
