@@ -38,7 +38,7 @@ async def test_something_is_asked_for_and_followed_until_it_is_done(
 ) -> None:
     await open_office_with_fleet(service, 20.0)
     page = await open_page("/")
-    await page.get_by_role("link", name="Requests").click(timeout=LONG_MS)
+    await page.get_by_role("link", name="Requests", exact=True).click(timeout=LONG_MS)
     await page.get_by_label("What is to be brought").fill("the mail", timeout=LONG_MS)
     await page.get_by_label("From", exact=True).fill("F1 101")
     await page.get_by_label("To", exact=True).fill("F1 103")
@@ -95,7 +95,7 @@ async def test_what_is_not_known_to_be_booked_is_booked_once_however_it_is_asked
 async def test_a_newcomer_asks_in_words_and_follows_it(office: Reopen) -> None:
     page = await office("/")
     began_s = time.monotonic()
-    await page.get_by_role("link", name="Requests").click(timeout=LONG_MS)
+    await page.get_by_role("link", name="Requests", exact=True).click(timeout=LONG_MS)
     words = page.get_by_label("Say it in words")
     await words.press_sequentially("bring the mail to 203")
     await words.press("Enter")
