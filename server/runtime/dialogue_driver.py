@@ -106,7 +106,7 @@ class DialogueDriver:
         clock = self._context.clock
         scripted = self._scripted(dialogue)
         if scripted is not None and has_come(clock, scripted[1]):
-            await self._take_answers(dialogue, ask, [scripted[0]], "script", proxy)
+            await self._take(self._answered(dialogue, ask, [scripted[0]], "script", proxy))
             return True
         assert ask.deadline is not None, "every question has a deadline"
         if has_come(clock, ask.deadline):
@@ -194,7 +194,7 @@ class DialogueDriver:
         prompt).
         """
         ask = _open_ask(dialogue, prompt)
-        return await self._take_answers(dialogue, ask, [answer], helper, proxy, author)
+        return await self._take(self._answered(dialogue, ask, [answer], helper, proxy, author))
 
     async def choose(
         self,
@@ -214,7 +214,8 @@ class DialogueDriver:
         chosen = next((each for each in ways if each.name == way), None)
         if chosen is None:
             raise ConflictError(_no_such_way(way, ways))
-        return await self._take_answers(dialogue, ask, chosen.answers, helper, proxy, author)
+        answers = chosen.answers
+        return await self._take(self._answered(dialogue, ask, answers, helper, proxy, author))
 
     async def extend(
         self,
@@ -283,18 +284,9 @@ class DialogueDriver:
                 due.append((scripted.answer, put_at + scripted.delay_s))
         return min(due, key=lambda each: each[1], default=None)
 
-    async def _take_answers(
-        self,
-        dialogue: DialogueState,
-        ask: ev.Prompt,
-        answers: Sequence[Answer],
-        helper: str,
-        proxy: RobotProxy,
-        author: ev.Author | None = None,
-    ) -> ev.Answered:
-        """Answer the open question, and each that follows from that; returns the last answer."""
-        events = self._answered(dialogue, ask, answers, helper, proxy, author)
-        committed = await self._context.commit(events)
+    async def _take(self, answered: Sequence[ev.Event]) -> ev.Answered:
+        """Commit the events of answers; returns the last answer."""
+        committed = await self._context.commit(answered)
         return [each for each in committed if isinstance(each, ev.Answered)][-1]
 
     def _answered(
@@ -306,7 +298,7 @@ class DialogueDriver:
         proxy: RobotProxy,
         author: ev.Author | None = None,
     ) -> list[ev.Event]:
-        """The events of answers, and of what is said to the last of them."""
+        """The events of an answer to the open question, and to each that follows from that."""
         make = self._make(dialogue)
         events: list[ev.Event] = []
         if dialogue.claim is not None and dialogue.claim.helper != helper:
