@@ -10,6 +10,8 @@ from scipy.ndimage import distance_transform_edt
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
+from mend.maps.building.clearance import is_clear
+
 Point = tuple[float, float]
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -27,6 +29,19 @@ def sampled(way: Sequence[Point], every_m: float = CELL_M) -> Matrix:
     at_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
     along_m = np.linspace(0.0, at_m[-1], max(2, math.ceil(at_m[-1] / every_m) + 1))
     return np.column_stack([np.interp(along_m, at_m, each) for each in corners.T])
+
+
+def straightened(
+    start: Point, way: Sequence[Point], segments: Matrix, needs_m: float
+) -> list[Point]:
+    """The corners of a way through cells, up to its last: segments (n, 4) keep `needs_m` off."""
+    corners, here = list[Point](), start
+    for number, cell in enumerate(way):
+        last = number + 1 == len(way)
+        if last or not is_clear(here, way[number + 1], segments, needs_m):
+            corners.append(cell)
+            here = cell
+    return corners
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,14 +88,18 @@ class FloorGrid:
 
     def at(self, values: Matrix, point: Point) -> float:
         """What a cell's value is at a point; of the nearest cell for one outside."""
-        row, column = self._cell(point)
-        return float(values[row, column])
+        return float(values[self.cell(point)])
+
+    def is_inside(self, point: Point) -> bool:
+        """Whether a point is in one of the cells."""
+        off = np.abs(np.asarray(point) - self._corner - HALF_M)
+        return bool((off <= HALF_M + CELL_M / 2).all())
 
     def reach(self, start: Point, free: Mask) -> Reach:
         """The shortest ways from a point through free cells, and from the cell that it is in."""
         free = free.copy()
-        row, column = self._cell(start)
-        free[row, column] = True
+        origin = self.cell(start)
+        free[origin] = True
         numbers = np.arange(_SIDE * _SIDE).reshape(_SIDE, _SIDE)
         rows, columns, metres = [], [], []
         for down, right in _STEPS:
@@ -93,8 +112,8 @@ class FloorGrid:
             (np.concatenate(metres), (np.concatenate(rows), np.concatenate(columns))),
             shape=(numbers.size, numbers.size),
         )
-        origin = int(numbers[row, column])
-        far_m, before = dijkstra(graph, directed=False, indices=origin, return_predecessors=True)
+        number = int(numbers[origin])
+        far_m, before = dijkstra(graph, directed=False, indices=number, return_predecessors=True)
         return Reach(far_m.reshape(_SIDE, _SIDE), before)
 
     def way(self, reach: Reach, cell: tuple[int, int]) -> list[Point]:
@@ -106,7 +125,8 @@ class FloorGrid:
             number = int(reach.before[number])
         return way[::-1]
 
-    def _cell(self, point: Point) -> tuple[int, int]:
+    def cell(self, point: Point) -> tuple[int, int]:
+        """The row and column of the cell that a point is in; the nearest one for one outside."""
         column, row = np.round((np.asarray(point) - self._corner) / CELL_M).astype(int)
         return int(np.clip(row, 0, _SIDE - 1)), int(np.clip(column, 0, _SIDE - 1))
 

@@ -20,6 +20,7 @@ from mend.maps.building.crossing import crossed_by
 from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 from mend.robots.base.body import BasePose
 from mend.robots.base.closed_ways import NO_WAYS, Closed, Lane
+from mend.robots.base.lane_access import LaneAccess, nearest_access
 from mend.robots.base.motion.surroundings import NOTHING, Points
 from mend.robots.base.open_door import Posts
 from mend.robots.base.ways import NO_WAITS, Ride
@@ -77,8 +78,9 @@ class FloorWays:
         Raises `CommandError` for a goal on another floor, or that no lane leads to.
         """
         floor, start, goal = self._on_one_floor(here, to)
-        lanes = self._along_lanes(floor, start, goal, closed)
-        points = [start, *((each.x_m, each.y_m) for each in lanes), goal]
+        first, last = self._first(floor, start, closed), self._nearest(floor, goal)
+        lanes = [(each.x_m, each.y_m) for each in self._along_lanes(floor, first, last, closed)]
+        points = [start, *first.corners, *lanes, *last.corners[::-1], goal]
         if self._is_wide(floor, points[0], points[2]):
             del points[1]
         if len(points) > 2 and self._is_wide(floor, points[-3], points[-1]):
@@ -91,7 +93,9 @@ class FloorWays:
 
         Raises `CommandError` as `path` does.
         """
-        lanes = self._along_lanes(*self._on_one_floor(here, to), closed)
+        floor, start, goal = self._on_one_floor(here, to)
+        first, last = self._first(floor, start, closed), self._nearest(floor, goal)
+        lanes = self._along_lanes(floor, first, last, closed)
         return not any(frozenset((a.name, b.name)) in closed for a, b in pairwise(lanes))
 
     def rides(
@@ -125,7 +129,7 @@ class FloorWays:
         begin = self._first(floor, start, closed, () if in_cabin else self._stops)
         end = self._nearest(goal_floor, goal)
         graph = self._later(_kept_off(self._all, closed), waits_s)
-        path = _named_path(graph, begin, end, self._speed_m_s)
+        path = _named_path(graph, begin.place, end.place, self._speed_m_s)
         rides = []
         for number, (a, b) in enumerate(pairwise(path)):
             if a.floor != b.floor:
@@ -300,18 +304,20 @@ class FloorWays:
         return floor, self._on_map(here), self._on_map(to)
 
     def _along_lanes(
-        self, floor: str, start: Point, goal: Point, closed: Closed
+        self, floor: str, first: LaneAccess, last: LaneAccess, closed: Closed
     ) -> Sequence[Place]:
-        """From the place that is nearest to the start to the one nearest to the goal."""
-        first, last = self._first(floor, start, closed), self._nearest(floor, goal)
+        """The quickest way between two places. Raises `CommandError`."""
         graph = _kept_off(self._graphs[floor], closed)
-        places = _named_path(graph, first, last, self._speed_m_s)
+        places = _named_path(graph, first.place, last.place, self._speed_m_s)
         through = [each.name for each in places[1:-1] if each.name in self._stops]
         if through:
-            raise CommandError(f"no lane leads from {first} to {last} but through {through[0]}")
+            ends = f"from {first.place.name} to {last.place.name}"
+            raise CommandError(f"no lane leads {ends} but through {through[0]}")
         return places
 
-    def _first(self, floor: str, start: Point, closed: Closed, but: Collection[str] = ()) -> str:
+    def _first(
+        self, floor: str, start: Point, closed: Closed, but: Collection[str] = ()
+    ) -> LaneAccess:
         """The place that a way begins with: of a lane that was found barred, the one before that.
 
         Raises `CommandError`.
@@ -321,7 +327,7 @@ class FloorWays:
                 ends = self._ends_m(lane, start)
                 beyond = next(iter(lane - {origin}), origin)
                 if ends is not None and ends[beyond] > _ON_LANE_M:
-                    return origin
+                    return LaneAccess(self._places[origin])
         return self._nearest(floor, start, but)
 
     def _ends_m(self, lane: Lane, point: Point) -> Mapping[str, float] | None:
@@ -334,14 +340,12 @@ class FloorWays:
             return None
         return {each.name: _away_m(each, point) for each in places}
 
-    def _nearest(self, floor: str, point: Point, but: Collection[str] = ()) -> str:
-        """The nearest place that no wall is before, `but` these. Raises `CommandError`."""
-        places, walls = self._graphs[floor].places, self._building.floors[floor].wall_segments
-        for place in sorted(places, key=lambda each: _away_m(each, point)):
-            way = np.array([*point, place.x_m, place.y_m])
-            if place.name not in but and not len(crossed_by(way, walls)):
-                return place.name
-        raise CommandError(f"there are walls all round ({point[0]:.2f}, {point[1]:.2f}) on {floor}")
+    def _nearest(self, floor: str, point: Point, but: Collection[str] = ()) -> LaneAccess:
+        """How one gets to the lanes of a floor, to none of these places. Raises `CommandError`."""
+        places = [each for each in self._graphs[floor].places if each.name not in but]
+        walls = self._building.floors[floor].wall_segments
+        stops = [stop for name, stop in self._cabins if name == floor]
+        return nearest_access(point, places, walls, stops, self._needs_m)
 
     def _is_wide(self, floor: str, a: Point, b: Point) -> bool:
         """Whether the straight way is wide enough to leave the lanes for."""
@@ -436,11 +440,14 @@ def _kept_off(graph: NavigationGraph, closed: Closed) -> NavigationGraph:
     return NavigationGraph(graph.places, map(now, graph.ways))
 
 
-def _named_path(graph: NavigationGraph, first: str, last: str, speed_m_s: float) -> Sequence[Place]:
+def _named_path(
+    graph: NavigationGraph, first: Place, last: Place, speed_m_s: float
+) -> Sequence[Place]:
     """The places on the quickest way. Raises `CommandError`."""
-    path = graph.quickest_path(graph.index(first), graph.index(last), speed_m_s)
+    begin, end = graph.index(first.name), graph.index(last.name)
+    path = graph.quickest_path(begin, end, speed_m_s)
     if not path:
-        raise CommandError(f"no lane leads from {first} to {last}")
+        raise CommandError(f"no lane leads from {first.name} to {last.name}")
     return [graph.places[number] for number, _ in path]
 
 

@@ -1,10 +1,12 @@
 """How people get round what stands between them and where they want to be."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from mend.maps.building.clearance import is_clear
-from mend.maps.building.floor_grid import CELL_M, FloorGrid
+from mend.maps.building.floor_grid import FloorGrid, straightened
 from mend.sim.building.bystander import RADIUS_M
 from mend.sim.building.social_force import KEEP_M
 
@@ -23,17 +25,8 @@ def way_on_foot(start: Point, goal: Point, segments: Matrix) -> list[Point]:
     Found in cells (Dijkstra 1959) within `floor_grid.HALF_M` of the start.
     """
     grid = FloorGrid(start)
-    free = grid.away_from_segments(segments) >= RADIUS_M + KEEP_M
-    near_goal = grid.away_from_point(goal)
-    reach = grid.reach(start, free)
-    row, column = np.unravel_index(int(np.argmin(near_goal)), near_goal.shape)
-    if near_goal[row, column] > CELL_M or not np.isfinite(reach.metres[row, column]):
+    reach = grid.reach(start, grid.away_from_segments(segments) >= RADIUS_M + KEEP_M)
+    if not grid.is_inside(goal) or not math.isfinite(grid.at(reach.metres, goal)):
         return []
-    cells = grid.way(reach, (int(row), int(column)))
-    way, here = list[Point](), start
-    for number, cell in enumerate(cells):
-        last = number + 1 == len(cells)
-        if last or not is_clear(here, cells[number + 1], segments, RADIUS_M + KEEP_M / 2):
-            way.append(cell)
-            here = cell
-    return way
+    way = grid.way(reach, grid.cell(goal))
+    return straightened(start, way, segments, RADIUS_M + KEEP_M / 2)

@@ -342,3 +342,22 @@ def test_an_elevator_that_others_wait_for_is_left_where_another_one_is_quicker()
     assert instead.elevator != ride.elevator
     everywhere = dict.fromkeys(lifts, 1000.0)
     assert ways.rides(here, to, waits_s=everywhere) == [ride]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_whoever_was_pushed_out_of_sight_of_the_lanes_still_gets_to_an_elevator(seed: int) -> None:
+    """Round the corner of a lobby no place but the elevator's stop may be in straight sight."""
+    building = Building(random_building(seed, 2, 12))
+    ways = FloorWays(building, Frame(), 1.0, 0.3)
+    floor, above = building.floors["F1"], building.floors["F2"]
+    goal = next(iter(above.places.values()))
+    to = BasePose(goal.x, goal.y, 0.0, above.height)
+    walls, generator = floor.wall_segments, np.random.default_rng(seed)
+    for elevator in building.document.elevators:
+        stop = stop_of(building, elevator, "F1")
+        for off in generator.uniform(-3.0, 3.0, (40, 2)):
+            at = np.array(stop) + off
+            sees_cabin = not len(crossed_by(np.array([*stop, *at]), walls))
+            if sees_cabin and distances_m(at[None], walls)[0] >= 0.3 and math.hypot(*off) > CABIN_M:
+                here = BasePose(*at.tolist(), 0.0, floor.height)
+                assert [each.to_floor for each in ways.rides(here, to)] == ["F2"]

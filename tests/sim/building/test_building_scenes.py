@@ -84,7 +84,7 @@ def test_a_place_that_no_robot_gets_to_is_told() -> None:
     ]
     ((where, message),) = told(scene, *leaves)
     assert where == ("places", "street")
-    assert message == "no robot gets to 'street': there are walls all round (-20.00, -20.00) on F1"
+    assert message == "no robot gets to 'street': no way leads from (-20.00, -20.00) to a lane"
 
 
 def test_what_is_in_the_cabin_of_an_elevator_is_told() -> None:
