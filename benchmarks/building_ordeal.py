@@ -28,6 +28,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -57,7 +58,7 @@ async def one(seed: int, options: argparse.Namespace) -> Outcome:
         return await ordeal.go_through()
 
 
-async def all_of(options: argparse.Namespace) -> list[Outcome]:
+async def all_of(seeds: Sequence[int], options: argparse.Namespace) -> list[Outcome]:
     """Some buildings at a time."""
     room = asyncio.Semaphore(options.at_once)
 
@@ -69,7 +70,6 @@ async def all_of(options: argparse.Namespace) -> list[Outcome]:
             print(f"    seed {seed}: {each}", flush=True)
         return outcome
 
-    seeds = range(options.first, options.first + options.buildings)
     return await asyncio.gather(*(with_room(seed) for seed in seeds))
 
 
@@ -104,8 +104,12 @@ def main() -> int:
     options = parser.parse_args()
     if options.quick:
         options.buildings, options.minutes, options.kills = 1, 2.0, 1
+    seeds = range(options.first, options.first + options.buildings)
+    kept = [options.keep / str(each) for each in seeds] if options.keep else []
+    if there := [str(each) for each in kept if each.exists()]:
+        parser.error(f"--keep: {', '.join(there)} is there already; name a folder without it")
     began_s = time.monotonic()
-    outcomes = asyncio.run(all_of(options))
+    outcomes = asyncio.run(all_of(seeds, options))
     counts = sum((each.counts for each in outcomes), Counter[str]())
     found = sum(len(each.findings) for each in outcomes)
     simulated_h = sum(each.simulated_s for each in outcomes) / 3600.0
