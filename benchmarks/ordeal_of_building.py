@@ -340,14 +340,16 @@ class BuildingOrdeal:
         return fleet
 
     async def _close(self, client: MendClient, site: UUID) -> None:
-        """Once no robot is on its way any more."""
-        async with asyncio.timeout(STANDS_STILL_S):
-            while True:
-                try:
-                    await self._answer(lambda: client.close_site(site))
-                    return
-                except RefusedError:
-                    await asyncio.sleep(LOOKS_EVERY_S)
+        """Once no robot is on its way any more, also to where it charges."""
+        began_s = self._last_s
+        while True:
+            try:
+                await self._answer(lambda: client.close_site(site))
+                return
+            except RefusedError as error:
+                await asyncio.sleep(LOOKS_EVERY_S)
+                if (await self._look(client, site)).now_s - began_s > BOUND_S:
+                    raise TimeoutError(f"this is not over: {error}") from error
 
     async def _wait_for_the_news(self) -> None:
         """Until who follows has heard all that is in the journal."""
