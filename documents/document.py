@@ -9,6 +9,7 @@ from typing import Any
 
 import yaml
 
+from mend.documents.parser_mistakes import TAB, UNKNOWN, parser_mistake
 from mend.documents.problem import Problem
 from mend.errors import WrongInputError
 
@@ -30,6 +31,8 @@ _BOOLEANS = {
     "FALSE": False,
 }
 _SURROGATES = re.compile(r"(\\\\)|\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})")
+
+_NOT_VALID = "the text is not valid YAML or JSON"
 
 _LOADER: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
@@ -233,13 +236,16 @@ def _line(event: Any) -> int:
 
 
 def _translate(error: yaml.YAMLError, text: str) -> DocumentError:
-    mark = getattr(error, "problem_mark", None)
+    if isinstance(error, yaml.reader.ReaderError):
+        before = text.encode("utf-8", "surrogatepass")[: error.position].decode("utf-8", "ignore")
+        line, column = before.count("\n") + 1, len(before.rpartition("\n")[2]) + 1
+        return DocumentError(line, f"{_NOT_VALID}: {parser_mistake(error.reason)}", column)
+    if not isinstance(error, yaml.MarkedYAMLError) or error.problem_mark is None:
+        return DocumentError(None, f"{_NOT_VALID}: {UNKNOWN}")
+    mark, begun = error.problem_mark, error.context_mark
     lines = text.split("\n")
-    if mark is not None and mark.line < len(lines) and lines[mark.line][mark.column :][:1] == "\t":
-        message = "YAML is indented with spaces, and here is a tab"
-        return DocumentError(mark.line + 1, message, mark.column + 1)
-    reason = getattr(error, "problem", None) or getattr(error, "reason", None) or "cannot be read"
-    message = f"the text is not valid YAML or JSON: {reason}"
-    if mark is None:
-        return DocumentError(None, message)
-    return DocumentError(mark.line + 1, message, mark.column + 1)
+    if mark.line < len(lines) and lines[mark.line][mark.column :][:1] == "\t":
+        return DocumentError(mark.line + 1, TAB, mark.column + 1)
+    earlier = begun.line + 1 if begun is not None and begun.line < mark.line else None
+    told = parser_mistake(error.problem or "", error.context or "", earlier)
+    return DocumentError(mark.line + 1, f"{_NOT_VALID}: {told}", mark.column + 1)

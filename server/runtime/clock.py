@@ -2,10 +2,16 @@
 
 import math
 from collections.abc import Callable
-from typing import Protocol
+from typing import Literal, Protocol
 
 TOLERANCE_S = 1e-6
 """Two moments closer than this are the same: converting between clocks loses the last digits."""
+
+
+def rate_while_asked(speed: float | Literal["max"]) -> float:
+    """How fast a simulated world's clock may run, at most, while people are asked: never faster
+    than they live."""
+    return 1.0 if speed == "max" else min(1.0, speed)
 
 
 class RunClock(Protocol):

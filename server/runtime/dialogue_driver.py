@@ -26,7 +26,7 @@ from mend.server.dialogues.escalation import (
 from mend.server.errors import LostRaceError
 from mend.server.journal import events as ev
 from mend.server.runtime.awaited_help import HelpersWord
-from mend.server.runtime.clock import has_come
+from mend.server.runtime.clock import has_come, rate_while_asked
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.dialogue_events import DialogueEvents
 from mend.server.runtime.dialogue_looks import DialogueLooks, seen_at
@@ -467,8 +467,7 @@ class DialogueDriver:
         """How fast the clock may run while somebody is asked."""
         if not self._answers.live:
             return None
-        speed = self._context.state.started.speed
-        return 1.0 if speed == "max" else min(1.0, speed)
+        return rate_while_asked(self._context.state.started.speed)
 
 
 def _standing(dialogue: DialogueState) -> Standing:

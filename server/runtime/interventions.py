@@ -5,6 +5,7 @@ from uuid import uuid4
 
 from mend.errors import ConflictError
 from mend.server.journal import events as ev
+from mend.server.runtime.clock import rate_while_asked
 from mend.server.runtime.context import RunContext
 from mend.server.runtime.robot_proxy import RobotProxy
 from mend.tasks.intervention import Intervention
@@ -45,7 +46,21 @@ class Interventions:
         )
         await self._context.commit([accepted])
         if proxy.hello is not None:
-            _tell(accepted, proxy)
+            _tell(accepted, proxy, self._not_before(accepted))
+
+    def _not_before(self, accepted: ev.InterventionAccepted) -> float | None:
+        """The moment (robot's clock) before which nobody can do it who has just promised help.
+
+        A world on a busy machine falls behind: people do not reach into it sooner after what they
+        were told than they really did.
+        """
+        state, clock = self._context.state, self._context.clock
+        promised = [each.awaiting for each in state.open_dialogues if each.awaiting is not None]
+        if not promised:
+            return None
+        last = max(promised, key=lambda each: each.wall_time)
+        since_s = (accepted.wall_time - last.wall_time).total_seconds()
+        return clock.to_robot(last.time + since_s * rate_while_asked(state.started.speed))
 
     def tell_again(self, proxy: RobotProxy) -> None:
         """A world was built (again) as the journal has it: what it has not yet done is to come.
@@ -53,12 +68,12 @@ class Interventions:
         What it did without having reported it is undone by that, so nothing is done twice.
         """
         for accepted in self._context.state.accepted.values():
-            _tell(accepted, proxy)
+            _tell(accepted, proxy, None)
 
 
-def _tell(accepted: ev.InterventionAccepted, proxy: RobotProxy) -> None:
+def _tell(accepted: ev.InterventionAccepted, proxy: RobotProxy, at: float | None) -> None:
     try:
-        proxy.intervene(accepted.command, accepted.intervention, accepted.by, None)
+        proxy.intervene(accepted.command, accepted.intervention, accepted.by, at)
     except ConflictError as error:
         # It is journaled, and so to be done, whatever else waits for the robot: it is told again
         # once it has started anew.

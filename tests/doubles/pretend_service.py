@@ -2,7 +2,7 @@
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Mapping, Sequence
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -31,7 +31,7 @@ from mend.server.runtime.run import Run
 from mend.server.runtime.run_state import RunState
 from mend.server.runtime.runtime import Runtime
 from mend.server.runtime.team import Neighbour
-from mend.server.runtime.views import RunView
+from mend.server.runtime.views import DialogueView, RunView
 from mend.tasks.definition import BehaviorNode, TaskTreeDefinition
 from mend.tasks.scene import Scene
 
@@ -109,8 +109,19 @@ class PretendService:
         ended = await self.runtime.wait_for_end(started.id)
         return ended, await self.journal.read(0, 1_000_000, started.id)
 
+    async def first_question(self) -> DialogueView:
+        """The first question that is put, once it is."""
+        async with asyncio.timeout(60):
+            while not (waiting := await self.runtime.dialogues.page("open", 100, 0)):  # noqa: ASYNC110
+                await asyncio.sleep(0)
+        return waiting[0]
+
     def run_of(self, view: RunView) -> Run:
         return self.runtime._runs[view.id]
+
+
+def utc_now() -> datetime:
+    return datetime.now(UTC)
 
 
 @asynccontextmanager
@@ -125,6 +136,7 @@ async def pretend_service(
     settings: RunSettings | None = None,
     sleep: Sleep = asyncio.sleep,
     attendance: Attendance | None = None,
+    utc_now: Callable[[], datetime] = utc_now,
     **robot: Any,
 ) -> AsyncIterator[PretendService]:
     """A runtime whose robots run into `faults` (object -> issue and step, in turn)."""
@@ -157,7 +169,7 @@ async def pretend_service(
         send_mail=send_mail,
         settings=settings or RunSettings(),
         monotonic=time.monotonic,
-        utc_now=lambda: datetime.now(UTC),
+        utc_now=utc_now,
         poses=PoseFeed(lambda *_: None, lambda _: None),
         attendance=attendance,
     )

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from languages_of_console import untold
 
 from mend.fleet.request_file import RequestFileError, read_requests
 from mend.maps.building.building import Building
@@ -18,6 +19,8 @@ SCENE = scene_of(OFFICE, "office", 2)
 FLOOR = OFFICE.floors["F1"]
 A, B = (f"F1/{each}" for each in FLOOR.lanes[0].between)
 ROOM, OTHER = (f"F1/{each}" for each in ("101", "102"))
+
+FILES = ("clauses", "refusals")
 
 
 def refuse(folder: Path, *lines: str, transfers: tuple[str, ...] = ()) -> None:
@@ -69,11 +72,16 @@ def test_what_cannot_happen_is_told_with_its_line_and_what_is_there(
         )
     assert f"{tmp_path / 'shift.yaml'}:4: 'happenings.1." in str(raised.value)
     assert told in str(raised.value)
+    assert untold([each.message for each in raised.value.problems], FILES) == []
 
 
 def test_a_transfer_place_that_is_not_there_is_told_with_those_that_are(tmp_path: Path) -> None:
-    with pytest.raises(RequestFileError, match=r"shift\.yaml:2: 'transfer_places\.0': .*'F1/no'; "):
-        refuse(tmp_path, "transfer_places: [F1/no]")
+    for place in ("F1/no", "F1/w0_0"):
+        with pytest.raises(
+            RequestFileError, match=f"yaml:2: 'transfer_places.0': .*'{place}'"
+        ) as no:
+            refuse(tmp_path, f"transfer_places: [{place}]")
+        assert untold([each.message for each in no.value.problems], FILES) == []
     with pytest.raises(CommandLineError, match=r"--transfer: .*'F1/no'; there is 'F1/101'"):
         refuse(tmp_path, transfers=("F1/no",))
     with pytest.raises(

@@ -1,6 +1,7 @@
 """What a person was asked to do is done once, whoever is killed before it was reported."""
 
 import json
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from mend.tasks.intervention import Act, Intervention
 ONE_PART = definition_of({"behavior": "pick_and_place", "object": "part_1", "place": "spot_1"})
 SCENE = lay_out([("part_1", "spot_1")], seed=1)
 STEAL = Intervention(act=Act.STEAL, object="part_1")
+PUT_BACK = Intervention(act=Act.PUT_BACK, object="part_1")
 
 
 def service_with(**fields: Any) -> Any:
@@ -54,6 +56,26 @@ async def test_an_intervention_is_accepted_and_then_done() -> None:
     assert isinstance(done, ev.InterventionDone)
     assert done.command == accepted.command
     assert (done.intervention, done.by) == (STEAL, "api")
+
+
+async def test_nobody_who_has_promised_help_reaches_into_a_world_sooner_than_they_really_did() -> (
+    None
+):
+    wall = datetime(2026, 1, 1, tzinfo=UTC)
+    faults = {"part_1": [("missed", 4)]}
+    async with service_with(faults=faults, patient=True, utc_now=lambda: wall) as service:
+        run = await start(service)
+        asked = await service.first_question()
+        await service.runtime.intervene(run.id, STEAL)
+        assert asked.prompt is not None
+        await service.runtime.dialogues.answer(asked.dialogue, asked.prompt.prompt, "yes", "ann")
+        await service.runtime.intervene(run.id, PUT_BACK)
+        wall += timedelta(seconds=3.0)
+        await service.runtime.intervene(run.id, PUT_BACK)
+        before, at_once, later = (each for each in told(service, run) if each.by == "api")
+    assert before.at is None
+    assert at_once.at is not None
+    assert later.at == pytest.approx(at_once.at + 3.0)
 
 
 async def test_what_a_killed_service_had_accepted_is_done_after_its_restart(

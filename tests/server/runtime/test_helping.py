@@ -23,14 +23,7 @@ FAULT = {"part_1": [("missed", 4)]}
 async def open_question(service: PretendService) -> DialogueView:
     request = {"tree": "tree", "world": "tabletop", "speed": "max"}
     await service.runtime.start_run(RunRequest.model_validate(request))
-    return await first_question(service)
-
-
-async def first_question(service: PretendService) -> DialogueView:
-    async with asyncio.timeout(60):
-        while not (waiting := await service.runtime.dialogues.page("open", 100, 0)):  # noqa: ASYNC110
-            await asyncio.sleep(0)
-    return waiting[0]
+    return await service.first_question()
 
 
 def prompt_in(view: DialogueView) -> PromptView:
