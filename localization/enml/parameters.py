@@ -30,6 +30,10 @@ class EnmlParameters:
     odometry_min_std_rad: float = radians(1.0)
     """Never trust a rotation more than this (published)."""
 
+    odometry_scale_std: float = 0.1
+    """Standard deviation of how much too long or too short wheels tell all ways, and turns, before
+    that is learned (ours)."""
+
     odometry_robust_width: float = 2.0
     """Standard deviations at which odometry's pull is half of what plain least squares gives it
     (ours: wheels that slip are wrong by more than noise)."""
