@@ -299,11 +299,11 @@ class EnmlLocalizer:
         self._is_in_doubt = False
         # What a search still looked through was seen before this was known.
         self._recovery.stop()
-        self._measure.begin(self._parameters.found_is_wrong)
+        self._measure.begin(self._recovery.is_wrong)
         self._strangeness.begin_anew()
         if self._track.by is By.MAP and same_place(place, self._track.pose):
             self._stray = None
             return None
         self._track, self._stray = self._unplaced, None
-        self._probation_m = self._parameters.probation_m
+        self._probation_m = self._parameters.blind_for_m
         return self._track.lay_over_map(place, _FOUND_STD)

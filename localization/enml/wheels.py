@@ -35,7 +35,8 @@ class Wheels:
 
     def __init__(self, parameters: EnmlParameters) -> None:
         self._parameters = parameters
-        self._prior = np.eye(2) / parameters.odometry_scale_std**2
+        rates = np.array([parameters.odometry_rate, parameters.odometry_angular_rate])
+        self._prior = np.diag(rates**-2)
         self._information = self._prior
         self._scales = np.ones(2)
 
