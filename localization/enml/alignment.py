@@ -35,7 +35,8 @@ class Aligner:
     """Lays scans over a map, and over what was seen just before."""
 
     def __init__(self, field: DistanceField, parameters: EnmlParameters) -> None:
-        self._parameters = parameters
+        # As much as a point on the map's lines counts in the solver, which is told in metres.
+        self._weight = parameters.ltf_correlation * (_WIDTH_M / parameters.laser_std_m) ** 2
         self._origin = field.origin
         self._cell_m = field.cell_m
         self._fit = fits(field, _WIDTH_M)
@@ -72,7 +73,7 @@ class Aligner:
         scores = np.empty((len(turns), len(shifts), len(shifts)))
         center = (predicted[:2] - origin) / self._cell_m
         score_lattice(grid, center, turned / self._cell_m, len(shifts) // 2, scores)
-        scores *= self._parameters.alignment_weight * len(points) / len(near)
+        scores *= self._weight * len(points) / len(near)
         scores -= _doubt(turns, shifts, deviations)
         best = np.unravel_index(int(scores.argmax()), scores.shape)
         moved = np.array([shifts[best[1]], shifts[best[2]], turns[best[0]]])

@@ -153,7 +153,7 @@ def recognized_points(
     """
     every = np.arange(len(later.scan_points))
     _, again = earlier.buckets.same_surface(
-        later.scan_points, every, motion, cos(parameters.stf_max_angle_rad)
+        later.scan_points, every, motion, cos(parameters.max_angle_rad)
     )
     seen = np.zeros(len(later.scan_points), dtype=np.bool_)
     seen[again] = True

@@ -23,7 +23,7 @@ class LongTermFeatures:
     def __init__(self, grid: SegmentGrid, parameters: EnmlParameters) -> None:
         self._grid = grid
         self._parameters = parameters
-        self._cos_max_angle = cos(parameters.ltf_max_angle_rad)
+        self._cos_max_angle = cos(parameters.max_angle_rad)
 
     def classify(self, node: PoseNode, pose: Poses) -> bool:
         """Bring the node's long-term features up to a pose; whether that changed which they are."""

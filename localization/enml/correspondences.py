@@ -60,7 +60,7 @@ class ShortTermFeatures:
 
     def __init__(self, parameters: EnmlParameters) -> None:
         self._parameters = parameters
-        self._cos_max_angle = cos(parameters.stf_max_angle_rad)
+        self._cos_max_angle = cos(parameters.max_angle_rad)
         self._known: dict[tuple[int, int], StfMatches] = {}
 
     def forget(self) -> None:
@@ -75,7 +75,7 @@ class ShortTermFeatures:
         `changed` names (by index) the poses whose long-term features are not what they were. Marks
         the newest pose's short-term features.
         """
-        pairs = _pairs(len(nodes), self._parameters.stf_separations)
+        pairs = _pairs(len(nodes))
         motions = relative(poses[pairs[:, 0]], poses[pairs[:, 1]])
         names = [(nodes[a].identity, nodes[b].identity) for a, b in pairs.tolist()]
         moved = self._moved(names, motions)
@@ -107,13 +107,15 @@ class ShortTermFeatures:
 
 
 @lru_cache(maxsize=64)
-def _pairs(count: int, separations: tuple[int, ...]) -> Indices:
-    """Which poses (earlier, later) of so many are compared."""
+def _pairs(count: int) -> Indices:
+    """Which poses (earlier, later) of so many are compared: 1, 2, 4, 8... apart.
+
+    Published: every fourth; so both what is near and what is far is tied, by fewer.
+    """
     found = [
-        (later - separation, later)
+        (later - (1 << doublings), later)
         for later in range(count)
-        for separation in separations
-        if separation <= later
+        for doublings in range(later.bit_length())
     ]
     return np.array(found, dtype=np.int64).reshape(-1, 2)
 

@@ -48,7 +48,7 @@ class Episode:
         """Add what was seen after a motion, in place of the newest pose if that is too near."""
         if not self.nodes:
             travel, predicted = Travel(), self.prior
-        elif self._newest_stays():
+        elif self.newest_stays:
             travel, predicted = Travel(), compose(self.poses[-1], step)
             travel.add(step)
         else:
@@ -60,7 +60,9 @@ class Episode:
         self.nodes.append(node)
         self.poses = np.vstack([self.poses, predicted])
 
-    def _newest_stays(self) -> bool:
+    @property
+    def newest_stays(self) -> bool:
+        """Whether the newest pose will be kept beside the next."""
         travel = self.nodes[-1].travel
         return (
             len(self.nodes) == 1

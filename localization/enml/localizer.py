@@ -21,6 +21,7 @@ from mend.localization.enml.recovery import MayBeAt, Recovery
 from mend.localization.enml.sight import Sight
 from mend.localization.enml.solver import Linearize
 from mend.localization.enml.track import By, Track
+from mend.localization.enml.wheels import Wheels
 from mend.localization.localizer import Estimate, PointClass
 from mend.localization.points import DEFAULT_MAX_RANGE_M, ScanPoints
 from mend.localization.pose import Poses, compose, wrap_angle
@@ -84,6 +85,7 @@ class EnmlLocalizer:
         covariance = np.asarray(covariance, dtype=np.float64) + _LEAST_VARIANCE * np.eye(3)
         self._stream = ScanStream()
         self._sight = Sight(self._parameters)
+        self._wheels = Wheels(self._parameters)
         self._unweighed = self._parameters.min_translation_m
         self._searched_m = self._probation_m = 0.0
         self._off_map_m = np.inf
@@ -129,8 +131,9 @@ class EnmlLocalizer:
 
         Raises `InvalidScanError`, and is then as it was before.
         """
-        motion = self._stream.accept(odometry, scan)
-        moved_m = float(np.hypot(motion[0], motion[1]))
+        told = self._stream.accept(odometry, scan)
+        moved_m = float(np.hypot(told[0], told[1]))
+        motion = self._wheels.corrected(told)
         points = self._sight.take(scan, moved_m)
         self._seen = scan, points
         covariance = self._track.advance(motion, scan, points)
@@ -143,10 +146,19 @@ class EnmlLocalizer:
         self._searched_m += moved_m
         self._probation_m -= moved_m
         self._weigh_place()
+        self._learn_wheels()
         if self._is_lost or self._probation_m > 0.0:
             covariance = self._look_for_place(covariance)
         self._search_at_once = False
         return self._estimate(covariance)
+
+    def _learn_wheels(self) -> None:
+        """While it is sure where the robot is."""
+        if self._is_lost or self._probation_m > 0.0:
+            return
+        step = self._track.last_step()
+        if step is not None:
+            self._wheels.learn(step)
 
     @property
     def _is_lost(self) -> bool:
@@ -287,11 +299,11 @@ class EnmlLocalizer:
         self._is_in_doubt = False
         # What a search still looked through was seen before this was known.
         self._recovery.stop()
-        self._measure.begin(self._parameters.found_is_wrong)
+        self._measure.begin(self._recovery.is_wrong)
         self._strangeness.begin_anew()
         if self._track.by is By.MAP and same_place(place, self._track.pose):
             self._stray = None
             return None
         self._track, self._stray = self._unplaced, None
-        self._probation_m = self._parameters.probation_m
+        self._probation_m = self._parameters.blind_for_m
         return self._track.lay_over_map(place, _FOUND_STD)

@@ -27,16 +27,13 @@ class Travel:
 
     def deviations(self, parameters: EnmlParameters) -> Poses:
         """Standard deviations along and across the motion (metres) and of the heading (radians)."""
-        floor_m = parameters.odometry_min_std_m
-        return np.array(
-            [
-                floor_m + parameters.odometry_rate * self.path_m,
-                floor_m + parameters.odometry_rate * self.path_m,
-                parameters.odometry_min_std_rad
-                + parameters.odometry_angular_rate * self.turned_rad
-                + parameters.odometry_drift_rad_per_m * self.path_m,
-            ]
-        )
+        its = parameters
+        # However short, it is trusted no more than if it were a step of the episode longer.
+        path_m = self.path_m + its.min_translation_m
+        turned_rad = self.turned_rad + its.min_rotation_rad
+        aside_m = its.odometry_rate * path_m
+        turned_off = its.odometry_angular_rate * turned_rad + its.odometry_drift_rad_per_m * path_m
+        return np.array([aside_m, aside_m, turned_off])
 
     def whitening(self, parameters: EnmlParameters) -> NDArray[np.float64]:
         """The matrix (3, 3) that turns the motion's error into independent unit variances."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import count, product
-from math import cos
+from math import cos, exp
 
 import numpy as np
 
@@ -79,7 +79,7 @@ class Recovery:
         self._grid = grid
         self._anywhere = anywhere
         self._parameters = parameters
-        self._cos_max_angle = cos(parameters.ltf_max_angle_rad)
+        self._cos_max_angle = cos(parameters.max_angle_rad)
         self.forget()
 
     def forget(self) -> None:
@@ -106,6 +106,15 @@ class Recovery:
     def is_searching(self) -> bool:
         """Whether a search goes on."""
         return self._work is not None
+
+    @property
+    def is_wrong(self) -> float:
+        """How probable it is at first that a place which was found is not the right one."""
+        return 1.0 / (1.0 + exp(self._least_lead))
+
+    @property
+    def _least_lead(self) -> float:
+        return _LEAST_DOUBT * self._parameters.tells_at_most
 
     @property
     def suspects_elsewhere(self) -> bool:
@@ -255,13 +264,13 @@ class Recovery:
             for each, merit in zip(found, merits, strict=True)
             if not same_place(each.pose, place)
         ]
-        doubt = max(_LEAST_DOUBT, 1.0 - seen.path_m / its.recovery_patience_m)
+        doubt = max(_LEAST_DOUBT, 1.0 - (1.0 - _LEAST_DOUBT) * seen.path_m / its.blind_for_m)
         if here is not None and same_place(place, here.pose):
             doubt = _LEAST_DOUBT
         # The right place may be among those that were not found.
         lead = merits[best] - max([its.found_above, *rivals])
         again = won is not None and same_place(place, won)
-        return found[best] if again or lead >= doubt * its.recovery_lead else None
+        return found[best] if again or lead >= doubt * its.tells_at_most else None
 
     def _is_likelier(self, found: list[Found], here: Found, seen: "_Evidence") -> bool:
         """Whether it is clearly likelier that the robot is elsewhere, if not where.
@@ -274,7 +283,7 @@ class Recovery:
             if not same_place(each.pose, here.pose)
         ]
         lead = max([0.0, *others]) - here.score - self._prior(here, seen)
-        return lead >= _LEAST_DOUBT * self._parameters.recovery_lead
+        return lead >= self._least_lead
 
     def _prior(self, found: Found, seen: "_Evidence") -> float:
         """Log odds of a place: who has drifted off is near by."""
@@ -282,7 +291,7 @@ class Recovery:
         if here is None or not seen.drifted:
             return 0.0
         near = np.hypot(*(found.pose - here)[:2]) < its.known_within_m
-        return its.drifted_counts if near else 0.0
+        return its.found_above if near else 0.0
 
 
 @dataclass(frozen=True, slots=True)

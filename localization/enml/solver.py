@@ -29,17 +29,16 @@ class Solution:
     information: Floats
     iterations: int
 
-    def covariance_of(self, pose: int) -> Floats:
-        """The marginal covariance (3, 3) of one of the poses; metres and radians, map's frame."""
-        count = len(self.information)
-        columns = np.zeros((count, 3))
-        first = 3 * pose % count
-        columns[first : first + 3] = np.eye(3)
+    def covariance_of(self, *poses: int) -> Floats:
+        """The joint covariance (3n, 3n) of some of the poses; metres and radians, map's frame."""
+        every = np.arange(len(self.information))
+        rows = every.reshape(-1, 3)[list(poses)].ravel()
+        columns = np.eye(len(every))[:, rows]
         try:
             solved = cho_solve(cho_factor(self.information), columns)
         except LinAlgError:
             solved = np.linalg.pinv(self.information) @ columns
-        block = solved[first : first + 3]
+        block = solved[rows]
         return np.asarray((block + block.T) / 2.0)
 
 

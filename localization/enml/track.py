@@ -14,6 +14,7 @@ from mend.localization.enml.prior import whitening_of
 from mend.localization.enml.problem import Floats
 from mend.localization.enml.settling import has_moved
 from mend.localization.enml.solver import Linearize, Solution, solve
+from mend.localization.enml.wheels import Step
 from mend.localization.points import ScanPoints
 from mend.localization.pose import Poses, transform, wrap
 from mend.localization.scan import Scan
@@ -54,11 +55,20 @@ class Track:
         self._long_term = long_term
         self._short_term = ShortTermFeatures(parameters)
         self._linearize = linearize
+        self._solution: Solution | None = None
 
     @property
     def pose(self) -> Poses:
         """Of the newest scan, or where the track begins before there is one."""
         return self.episode.poses[-1] if len(self.episode) else self.episode.prior
+
+    def last_step(self) -> Step | None:
+        """The way between the two newest poses, once both are kept."""
+        episode, solution = self.episode, self._solution
+        if solution is None or len(episode) < 2 or not episode.newest_stays:
+            return None
+        travel, (before, after) = episode.nodes[-1].travel, episode.poses[-2:]
+        return Step(travel, before, after, solution.covariance_of(-2, -1))
 
     def advance(self, motion: Poses, scan: Scan, points: ScanPoints) -> Floats:
         """Take what was seen after a motion; the (3, 3) covariance of the newest pose."""
@@ -91,6 +101,7 @@ class Track:
             self._parameters.max_episode_length,
         )
         self.episode.forget_before(boundary, ties)
+        self._solution = solution
         return solution.covariance_of(-1)
 
     def _align(self) -> None:

@@ -377,11 +377,10 @@ def test_who_drives_on_where_the_map_shows_nothing_is_followed_by_what_is_seen_t
     "wrong",
     [
         {"laser_std_m": 0.0},
-        {"gate_m": float("nan")},
+        {"odometry_rate": float("nan")},
         {"min_episode_length": 1},
         {"max_episode_length": 5},
-        {"stf_separations": ()},
-        {"stf_max_angle_rad": 2.0},
+        {"max_angle_rad": 2.0},
     ],
 )
 def test_parameters_that_make_no_sense_are_refused(wrong: dict[str, object]) -> None:

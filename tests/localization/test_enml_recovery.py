@@ -144,7 +144,7 @@ def test_nothing_seen_gives_no_candidates() -> None:
 def test_polishing_brings_a_place_to_where_it_belongs(off: tuple[float, float, float]) -> None:
     episode = seen_along(WAY, FLOOR, WAY[0])
     places = np.array([WAY[-1] + np.array(off)])
-    cos_max_angle = np.cos(EnmlParameters().ltf_max_angle_rad)
+    cos_max_angle = np.cos(EnmlParameters().max_angle_rad)
     grid = segment_grid(FLOOR.segments)
     polish(grid, looks_of(episode, 3), GATES_M, cos_max_angle, places)
     assert off_m(places[0], WAY[-1]) < 0.02
