@@ -12,6 +12,9 @@ from mend.tasks.intervention import Intervention
 
 MOST_WAITING = 100
 """So many may have been accepted and not be done yet."""
+FALLS_BEHIND_S = 2.0
+"""A world is taken to be behind by no more than this: the service may have been gone, or the run
+have been paused."""
 
 log = logging.getLogger(__name__)
 
@@ -52,7 +55,7 @@ class Interventions:
         """The moment (robot's clock) before which nobody can do it who has just promised help.
 
         A world on a busy machine falls behind: people do not reach into it sooner after what they
-        were told than they really did.
+        were told than they really did. One that stood meanwhile has not fallen behind.
         """
         state, clock = self._context.state, self._context.clock
         promised = [each.awaiting for each in state.open_dialogues if each.awaiting is not None]
@@ -60,7 +63,8 @@ class Interventions:
             return None
         last = max(promised, key=lambda each: each.wall_time)
         since_s = (accepted.wall_time - last.wall_time).total_seconds()
-        return clock.to_robot(last.time + since_s * rate_while_asked(state.started.speed))
+        done_s = last.time + since_s * rate_while_asked(state.started.speed)
+        return clock.to_robot(min(done_s, clock.now() + FALLS_BEHIND_S))
 
     def tell_again(self, proxy: RobotProxy) -> None:
         """A world was built (again) as the journal has it: what it has not yet done is to come.

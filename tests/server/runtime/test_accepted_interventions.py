@@ -70,12 +70,17 @@ async def test_nobody_who_has_promised_help_reaches_into_a_world_sooner_than_the
         assert asked.prompt is not None
         await service.runtime.dialogues.answer(asked.dialogue, asked.prompt.prompt, "yes", "ann")
         await service.runtime.intervene(run.id, PUT_BACK)
-        wall += timedelta(seconds=3.0)
+        wall += timedelta(seconds=1.0)
         await service.runtime.intervene(run.id, PUT_BACK)
-        before, at_once, later = (each for each in told(service, run) if each.by == "api")
+        wall += timedelta(hours=1.0)
+        await service.runtime.intervene(run.id, PUT_BACK)
+        before, at_once, later, stood = (each for each in told(service, run) if each.by == "api")
     assert before.at is None
     assert at_once.at is not None
-    assert later.at == pytest.approx(at_once.at + 3.0)
+    assert later.at == pytest.approx(at_once.at + 1.0)
+    # The world stood for an hour: nobody is kept from helping for that long.
+    assert stood.at is not None
+    assert stood.at < at_once.at + 60.0
 
 
 async def test_what_a_killed_service_had_accepted_is_done_after_its_restart(
