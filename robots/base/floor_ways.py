@@ -30,6 +30,7 @@ from mend.tasks.frames import Frame
 Point = tuple[float, float]
 
 _AROUND_M, _EVERY_M = 6.0, 0.15
+_ROUNDING_M = 1e-6
 _ON_LANE_M = 0.6
 """Who is farther from a lane is not on it."""
 _ASIDE_M = 0.25
@@ -78,14 +79,13 @@ class FloorWays:
         Raises `CommandError` for a goal on another floor, or that no lane leads to.
         """
         floor, start, goal = self._on_one_floor(here, to)
-        first, last = self._first(floor, start, closed), self._nearest(floor, goal)
+        first, last = self._first(floor, start, closed, goal), self._nearest(floor, goal, start)
         lanes = [(each.x_m, each.y_m) for each in self._along_lanes(floor, first, last, closed)]
         points = [start, *first.corners, *lanes, *last.corners[::-1], goal]
         if self._is_wide(floor, points[0], points[2]):
             del points[1]
         if len(points) > 2 and self._is_wide(floor, points[-3], points[-1]):
             del points[-2]
-        points = self._round_cabin(floor, self._round_cabin(floor, points)[::-1])[::-1]
         return [self._frame.to_robot(*each) for each in points[1:]]
 
     def leads_round(self, here: BasePose, to: BasePose, closed: Closed) -> bool:
@@ -94,7 +94,7 @@ class FloorWays:
         Raises `CommandError` as `path` does.
         """
         floor, start, goal = self._on_one_floor(here, to)
-        first, last = self._first(floor, start, closed), self._nearest(floor, goal)
+        first, last = self._first(floor, start, closed, goal), self._nearest(floor, goal, start)
         lanes = self._along_lanes(floor, first, last, closed)
         return not any(frozenset((a.name, b.name)) in closed for a, b in pairwise(lanes))
 
@@ -126,7 +126,7 @@ class FloorWays:
         if in_cabin:
             waits_s = NO_WAITS
         # Who stands before one elevator may take another.
-        begin = self._first(floor, start, closed, () if in_cabin else self._stops)
+        begin = self._first(floor, start, closed)
         end = self._nearest(goal_floor, goal)
         graph = self._later(_kept_off(self._all, closed), waits_s)
         path = _named_path(graph, begin.place, end.place, self._speed_m_s)
@@ -316,7 +316,7 @@ class FloorWays:
         return places
 
     def _first(
-        self, floor: str, start: Point, closed: Closed, but: Collection[str] = ()
+        self, floor: str, start: Point, closed: Closed, goal: Point | None = None
     ) -> LaneAccess:
         """The place that a way begins with: of a lane that was found barred, the one before that.
 
@@ -328,7 +328,7 @@ class FloorWays:
                 beyond = next(iter(lane - {origin}), origin)
                 if ends is not None and ends[beyond] > _ON_LANE_M:
                     return LaneAccess(self._places[origin])
-        return self._nearest(floor, start, but)
+        return self._nearest(floor, start, goal)
 
     def _ends_m(self, lane: Lane, point: Point) -> Mapping[str, float] | None:
         """How far a point on a lane is from each of its ends; None beside it."""
@@ -340,44 +340,35 @@ class FloorWays:
             return None
         return {each.name: _away_m(each, point) for each in places}
 
-    def _nearest(self, floor: str, point: Point, but: Collection[str] = ()) -> LaneAccess:
-        """How one gets to the lanes of a floor, to none of these places. Raises `CommandError`."""
-        places = [each for each in self._graphs[floor].places if each.name not in but]
+    def _nearest(self, floor: str, point: Point, other: Point | None = None) -> LaneAccess:
+        """How one gets to the lanes of a floor, and to the cabin that either end of a way is in.
+
+        Raises `CommandError`.
+        """
+        ends = [point] if other is None else [point, other]
+        stops = [
+            stop
+            for name, stop in self._cabins
+            if name == floor and min(math.dist(stop, each) for each in ends) >= CABIN_M
+        ]
         walls = self._building.floors[floor].wall_segments
-        stops = [stop for name, stop in self._cabins if name == floor]
-        return nearest_access(point, places, walls, stops, self._needs_m)
+        return nearest_access(point, self._graphs[floor].places, walls, stops, self._needs_m)
 
     def _is_wide(self, floor: str, a: Point, b: Point) -> bool:
-        """Whether the straight way is wide enough to leave the lanes for."""
+        """Whether the straight way is wide enough to leave the lanes for.
+
+        It may begin or end beside a cabin, and leads nearer to none than that.
+        """
         walls = self._building.floors[floor].wall_segments
         if not is_clear(a, b, walls, self._needs_m):
             return False
         around_m = CABIN_M + self._needs_m
-        return not any(
-            clearance_m(a, b, np.array([[*stop, *stop]])) < around_m
-            and min(math.dist(a, stop), math.dist(b, stop)) >= around_m
+        return all(
+            clearance_m(a, b, np.array([[*stop, *stop]]))
+            >= min(around_m, math.dist(a, stop), math.dist(b, stop)) - _ROUNDING_M
             for name, stop in self._cabins
             if name == floor
         )
-
-    def _round_cabin(self, floor: str, points: list[Point]) -> list[Point]:
-        """A way without the cabin through which it begins, from where one waits for that.
-
-        It leads to the lane at the farthest point from which there is room to do so.
-        """
-        if len(points) < 3 or not self._is_beside_cabin(floor, points[0], points[1]):
-            return points
-        start, stop, after = points[:3]
-        count = max(2, math.ceil(math.dist(stop, after) / _EVERY_M))
-        for x, y in np.linspace(after, stop, count)[:-1].tolist():
-            if self._is_wide(floor, start, (x, y)):
-                return [start, (x, y), *points[2:]]
-        return points
-
-    def _is_beside_cabin(self, floor: str, at: Point, stop: Point) -> bool:
-        """Whether a point is a cabin's stop, and another one outside that."""
-        stops = (each for name, each in self._cabins if name == floor)
-        return math.dist(at, stop) >= CABIN_M and any(math.dist(e, stop) < 1e-6 for e in stops)
 
     def _floor(self, pose: BasePose) -> str:
         floor = self._building.floor_at(pose.z)

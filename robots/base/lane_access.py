@@ -7,18 +7,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from mend.maps.building.cabin import CABIN_M, cabin_walls
+from mend.maps.building.clearance import distances_m, is_clear
 from mend.maps.building.crossing import crossed_by
-from mend.maps.building.floor_grid import CELL_M, FloorGrid, Matrix, Point, straightened
+from mend.maps.building.floor_grid import CELL_M, FloorGrid, Matrix, Point, Reach, straightened
 from mend.maps.navigation import Place
 from mend.robots.execution.command_error import CommandError
 
 _LEAST_M = 2 * CELL_M
 """Nearer to a wall cells do not tell on which side of it they are."""
+_ROUNDING_M = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
 class LaneAccess:
-    """A place of the graph, and the corners of the way to it: none to one in straight sight."""
+    """A place of the graph, and the corners of the way to it: none where that is straight."""
 
     place: Place
     corners: Sequence[Point] = ()
@@ -27,40 +29,65 @@ class LaneAccess:
 def nearest_access(
     point: Point, places: Collection[Place], walls: Matrix, stops: Sequence[Point], needs_m: float
 ) -> LaneAccess:
-    """The nearest place that no wall (n, 4) is before, else the one with the shortest way there.
+    """The nearest place to which there is room straight on, else the one with the shortest way.
 
-    That way keeps `needs_m` from walls, or as far as the point is from them, and leads through no
-    cabin at `stops`; it is found in cells (Dijkstra 1959), within `floor_grid.HALF_M`. Raises
-    `CommandError` where there is none.
+    There is room where all walls (n, 4) and cabins at `stops` keep `needs_m` off, or as much as of
+    the point. Ways are found in cells (Dijkstra 1959), within `floor_grid.HALF_M`. Where none is, a
+    place will do that no wall is before, also one in a cabin: what is seen there will tell. Raises
+    `CommandError` where there is none either.
     """
-    for place in sorted(places, key=lambda each: math.dist((each.x_m, each.y_m), point)):
-        if not len(crossed_by(np.array([*point, place.x_m, place.y_m]), walls)):
-            return LaneAccess(place)
-    found = _round_walls(point, places, _with_cabins(point, walls, stops), needs_m)
+    outside = [each for each in places if not _is_in_cabin(each, stops)]
+    barred = np.concatenate([walls.reshape(-1, 4), *map(cabin_walls, stops)])
+    found = (
+        _straight_on(point, outside, barred, needs_m)
+        or _round_walls(point, outside, barred, needs_m)
+        or _straight_on(point, places, walls, 0.0)
+    )
     if found is None:
         raise CommandError(f"no way leads from ({point[0]:.2f}, {point[1]:.2f}) to a lane")
     return found
 
 
-def _with_cabins(point: Point, walls: Matrix, stops: Sequence[Point]) -> Matrix:
-    cabins = [cabin_walls(stop) for stop in stops if math.dist(stop, point) >= CABIN_M]
-    return np.concatenate([walls.reshape(-1, 4), *cabins])
+def _is_in_cabin(place: Place, stops: Sequence[Point]) -> bool:
+    return any(math.dist((place.x_m, place.y_m), stop) < CABIN_M for stop in stops)
+
+
+def _straight_on(
+    point: Point, places: Collection[Place], barred: Matrix, needs_m: float
+) -> LaneAccess | None:
+    keeps_m = min(needs_m, float(distances_m(np.array([point]), barred)[0]))
+    for place in sorted(places, key=lambda each: math.dist((each.x_m, each.y_m), point)):
+        to = place.x_m, place.y_m
+        if not len(crossed_by(np.array([*point, *to]), barred)) and (
+            needs_m == 0.0 or is_clear(point, to, barred, keeps_m - _ROUNDING_M)
+        ):
+            return LaneAccess(place)
+    return None
 
 
 def _round_walls(
-    point: Point, places: Collection[Place], walls: Matrix, needs_m: float
+    point: Point, places: Collection[Place], barred: Matrix, needs_m: float
 ) -> LaneAccess | None:
     grid = FloorGrid(point)
-    walls_m = grid.away_from_segments(walls)
-    keeps_m = min(needs_m, max(_LEAST_M, grid.at(walls_m, point)))
-    reach = grid.reach(point, walls_m >= keeps_m)
+    barred_m = grid.away_from_segments(barred)
+    keeps_m = min(needs_m, max(_LEAST_M, grid.at(barred_m, point)))
+    # What is in a cell may be half of one nearer to a wall: so much farther off, if there is room.
+    for needed_m in (keeps_m + CELL_M / 2, keeps_m):
+        reach = grid.reach(point, barred_m >= needed_m)
+        nearest = _nearest(places, grid, reach)
+        if nearest is not None:
+            way = grid.way(reach, grid.cell((nearest.x_m, nearest.y_m)))
+            corners = straightened(point, way, barred, needed_m - CELL_M / 2)[:-1]
+            return LaneAccess(nearest, corners)
+    return None
+
+
+def _nearest(places: Collection[Place], grid: FloorGrid, reach: Reach) -> Place | None:
+    """The place with the shortest way; None where none is reached."""
 
     def far_m(place: Place) -> float:
         at = place.x_m, place.y_m
         return grid.at(reach.metres, at) if grid.is_inside(at) else math.inf
 
     nearest = min(places, key=far_m, default=None)
-    if nearest is None or not math.isfinite(far_m(nearest)):
-        return None
-    way = grid.way(reach, grid.cell((nearest.x_m, nearest.y_m)))
-    return LaneAccess(nearest, straightened(point, way, walls, keeps_m - CELL_M / 2)[:-1])
+    return None if nearest is None or math.isinf(far_m(nearest)) else nearest

@@ -12,7 +12,7 @@ from sampled import sample
 
 from mend.maps.building.building import Building, BuildingDocument, Caller, FloorPlace, PlaceKind
 from mend.maps.building.cabin import CABIN_M, cabin_walls, stop_of
-from mend.maps.building.clearance import distances_m
+from mend.maps.building.clearance import clearance_m, distances_m
 from mend.maps.building.crossing import crossed_by
 from mend.maps.building.random_building import random_building
 from mend.robots.base.body import BasePose
@@ -361,3 +361,32 @@ def test_whoever_was_pushed_out_of_sight_of_the_lanes_still_gets_to_an_elevator(
             if sees_cabin and distances_m(at[None], walls)[0] >= 0.3 and math.hypot(*off) > CABIN_M:
                 here = BasePose(*at.tolist(), 0.0, floor.height)
                 assert [each.to_floor for each in ways.rides(here, to)] == ["F2"]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_way_between_places_outside_of_all_cabins_leads_through_one(seed: int) -> None:
+    building = Building(random_building(seed, 2, 8))
+    ways = FloorWays(building, Frame(), 1.0, 0.3)
+    generator = np.random.default_rng(seed)
+    for name, floor in building.floors.items():
+        stops = [
+            stop_of(building, elevator, name)
+            for elevator, each in building.document.elevators.items()
+            if name in each.stops
+        ]
+        around = generator.uniform(-4.0, 4.0, (30, 2)) + np.repeat(stops, 30 // len(stops), axis=0)
+        goals = [each for each in floor.places.values() if each.kind is not PlaceKind.ELEVATOR]
+        for at in around:
+            if distances_m(at[None], floor.wall_segments)[0] < 0.3:
+                continue
+            if min(math.dist(at, stop) for stop in stops) < CABIN_M + 0.3:
+                continue
+            to = goals[generator.integers(len(goals))]
+            here = BasePose(*at.tolist(), 0.0, floor.height)
+            try:
+                way = ways.path(here, BasePose(to.x, to.y, 0.0, floor.height))
+            except CommandError:
+                continue  # It stands in a room without a door.
+            for a, b in pairwise([tuple(at.tolist()), *way]):
+                for stop in stops:
+                    assert clearance_m(a, b, np.array([[*stop, *stop]])) >= CABIN_M, f"{name}: {at}"

@@ -23,7 +23,7 @@ SHUT = np.concatenate([CORNER, [[-2.0, 9.0, 1.0, 9.0], [1.0, 9.0, 1.0, 2.0]]])
 near = st.floats(-4.0, 4.0)
 
 
-def test_what_is_in_straight_sight_is_gone_to_though_something_behind_a_wall_is_nearer() -> None:
+def test_what_is_straight_on_is_gone_to_though_something_behind_a_wall_is_nearer() -> None:
     found = nearest_access((0.0, 0.0), [NEAR, FAR], CORNER[:1], [], NEEDS_M)
     assert (found.place, found.corners) == (FAR, ())
 
@@ -42,6 +42,27 @@ def test_nobody_goes_through_a_cabin_to_get_round_a_corner() -> None:
     assert nearest_access((0.0, 0.0), [NEAR], gap, [(5.0, 2.65)], NEEDS_M).place == NEAR
     with pytest.raises(CommandError, match=r"no way leads from \(0.00, 0.00\) to a lane"):
         nearest_access((0.0, 0.0), [NEAR], gap, [(1.0, 2.65)], NEEDS_M)
+
+
+def test_a_slit_that_nobody_fits_through_is_no_way_where_another_one_is() -> None:
+    slit = np.array([[1.0, -9.0, 1.0, -0.1], [1.0, 0.1, 1.0, 4.0]])
+    found = nearest_access((0.0, 0.0), [NEAR], slit, [], NEEDS_M)
+    assert found.corners
+    assert max(y for _, y in found.corners) > 4.0
+    shut = np.concatenate([slit, [[1.0, 4.0, -9.0, 4.0], [-9.0, 4.0, -9.0, -9.0]]])
+    shut = np.concatenate([shut, [[-9.0, -9.0, 1.0, -9.0]]])
+    assert nearest_access((0.0, 0.0), [NEAR], shut, [], NEEDS_M).place == NEAR
+
+
+def test_who_stands_near_a_wall_goes_straight_on_along_it() -> None:
+    wall = np.array([[-3.0, -0.2, 3.0, -0.2]])
+    assert nearest_access((0.0, 0.0), [NEAR], wall, [], NEEDS_M).corners == ()
+
+
+def test_a_cabin_is_gone_to_where_there_is_nothing_else() -> None:
+    assert nearest_access((0.0, 0.0), [NEAR], CORNER[1:], [(2.0, 0.0)], NEEDS_M).place == NEAR
+    found = nearest_access((0.0, 0.0), [NEAR, FAR], CORNER[2:], [(2.0, 0.0)], NEEDS_M)
+    assert found.place == FAR
 
 
 def test_who_is_shut_in_is_told_so() -> None:
