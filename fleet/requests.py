@@ -220,6 +220,8 @@ class _Bringing(_Asked):
 
     def _way(self, name: str, terms: Terms, load: float, *, direct: bool) -> Item:
         origin, destination = terms.place(self.origin), terms.place(self.destination)
+        if origin == destination:
+            raise WrongInputError(self._leads_nowhere)
         pickup = Visit(origin, self.window, service_s=terms.handling_s)
         by = Window(0.0, self.window.latest_s)
         delivery = Visit(destination, by, service_s=terms.handling_s)
@@ -228,8 +230,12 @@ class _Bringing(_Asked):
     @model_validator(mode="after")
     def _leads_somewhere(self) -> Self:
         if self.origin == self.destination:
-            raise ValueError(f"destination must be another place than origin ('{self.origin}')")
+            raise ValueError(self._leads_nowhere)
         return self
+
+    @property
+    def _leads_nowhere(self) -> str:
+        return f"destination must be another place than origin ('{self.origin}')"
 
 
 class GoToRoom(_Visiting):

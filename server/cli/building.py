@@ -171,10 +171,17 @@ def check(files: Annotated[list[Path], typer.Argument(metavar="FILE...")]) -> No
     """Say for each file what is wrong with it, or how large the building is."""
     from mend.maps.building.building_file import read_building_file
 
+    wrong = []
     for each in files:
-        with told_plainly():
-            building = read_building_file(each)
-        typer.echo(f"{each}: {_summary(building.document)}")
+        try:
+            with told_plainly():
+                building = read_building_file(each)
+        except CommandLineError as error:
+            wrong.append(str(error))
+        else:
+            typer.echo(f"{each}: {_summary(building.document)}")
+    if wrong:
+        raise CommandLineError("\n".join(wrong))
 
 
 @app.command("draw", short_help="Draw every floor.")

@@ -42,6 +42,16 @@ def test_the_example_has_no_mistakes_and_a_picture_of_each_floor(tmp_path: Path)
     assert drawn == ["F1.svg", "F2.svg", "F3.svg"]
 
 
+def test_each_file_is_checked_also_after_a_wrong_one(tmp_path: Path) -> None:
+    wrong = [tmp_path / name for name in ("one.yaml", "two.yaml")]
+    for each in wrong:
+        each.write_text("building: nowhere", encoding="utf-8")
+    told = CliRunner().invoke(app, ["check", str(wrong[0]), str(EXAMPLE), str(wrong[1])])
+    assert "3 floors, 66 places" in told.stdout
+    assert isinstance(told.exception, CommandLineError)
+    assert all(f"{each}" in str(told.exception) for each in wrong)
+
+
 def test_what_is_made_up_has_no_mistakes(tmp_path: Path) -> None:
     path = tmp_path / "made" / "up.yaml"
     made = run("generate", "--seed", 2, "--floors", 3, "--rooms", 30, "-o", path)

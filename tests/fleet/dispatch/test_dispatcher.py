@@ -77,6 +77,15 @@ def test_place_that_is_nowhere_is_refused() -> None:
         dispatcher_for("a").submit(asked(origin="cellar"), 0.0)
 
 
+def test_one_place_in_two_spellings_is_still_one_place() -> None:
+    dispatcher = dispatcher_for("a")
+    full = dispatcher.building.find("b")
+    assert full != "b"
+    with pytest.raises(WrongInputError, match=r"must be another place than origin \('b'\)"):
+        dispatcher.submit(asked("tea", "b", full), 0.0)
+    assert dispatcher.views() == []
+
+
 def test_escort_has_a_robot_to_itself() -> None:
     dispatcher = dispatcher_for("a")
     dispatcher.submit(asked("tea", "b", "d"), 0.0)
