@@ -17,6 +17,7 @@ from mend.maps.building.cabin import (
 )
 from mend.maps.building.clearance import clearance_m, is_clear
 from mend.maps.building.crossing import crossed_by
+from mend.maps.building.floor_grid import sampled
 from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 from mend.robots.base.body import BasePose
 from mend.robots.base.closed_ways import NO_WAYS, Closed, Lane
@@ -81,6 +82,8 @@ class FloorWays:
         floor, start, goal = self._on_one_floor(here, to)
         first, last = self._first(floor, start, closed, goal), self._nearest(floor, goal, start)
         lanes = [(each.x_m, each.y_m) for each in self._along_lanes(floor, first, last, closed)]
+        if len(lanes) == 1 and self._is_wide(floor, start, goal):
+            return [self._frame.to_robot(*goal)]
         points = [start, *first.corners, *lanes, *last.corners[::-1], goal]
         if self._is_wide(floor, points[0], points[2]):
             del points[1]
@@ -351,8 +354,24 @@ class FloorWays:
             for name, stop in self._cabins
             if name == floor and min(math.dist(stop, each) for each in ends) >= CABIN_M
         ]
-        walls = self._building.floors[floor].wall_segments
-        return nearest_access(point, self._graphs[floor].places, walls, stops, self._needs_m)
+        walls, places = self._building.floors[floor].wall_segments, self._graphs[floor].places
+        found = nearest_access(point, places, walls, stops, self._needs_m)
+        return self._straight_onto_lane(floor, point, found, stops) if found.corners else found
+
+    def _straight_onto_lane(
+        self, floor: str, point: Point, found: LaneAccess, stops: Sequence[Point]
+    ) -> LaneAccess:
+        """By a lane of the place, from where there is room straight on, outside of all cabins."""
+        graph, at = self._graphs[floor], (found.place.x_m, found.place.y_m)
+        onto = list[Point]()
+        for way in graph.ways:
+            if found.place.name in (way.a, way.b) and not way.one_way:
+                other = graph.place(way.b if way.a == found.place.name else way.a)
+                lane = sampled([at, (other.x_m, other.y_m)], _EVERY_M)[1:].tolist()
+                onto += [(x, y) for x, y in lane if self._is_wide(floor, point, (x, y))]
+        onto = [each for each in onto if all(math.dist(each, stop) >= CABIN_M for stop in stops)]
+        shortest = min(onto, key=lambda e: math.dist(e, at) + math.dist(e, point), default=None)
+        return found if shortest is None else LaneAccess(found.place, (shortest,))
 
     def _is_wide(self, floor: str, a: Point, b: Point) -> bool:
         """Whether the straight way is wide enough to leave the lanes for.
