@@ -376,15 +376,15 @@ class FloorWays:
     def _is_wide(self, floor: str, a: Point, b: Point) -> bool:
         """Whether the straight way is wide enough to leave the lanes for.
 
-        It may begin or end beside a cabin, and leads nearer to none than that.
+        It may begin or end in a cabin, or beside one, and leads nearer to none than that.
         """
         walls = self._building.floors[floor].wall_segments
         if not is_clear(a, b, walls, self._needs_m):
             return False
         around_m = CABIN_M + self._needs_m
         return all(
-            clearance_m(a, b, np.array([[*stop, *stop]]))
-            >= min(around_m, math.dist(a, stop), math.dist(b, stop)) - _ROUNDING_M
+            (away_m := min(math.dist(a, stop), math.dist(b, stop))) < CABIN_M
+            or clearance_m(a, b, np.array([[*stop, *stop]])) >= min(around_m, away_m) - _ROUNDING_M
             for name, stop in self._cabins
             if name == floor
         )
