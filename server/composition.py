@@ -198,7 +198,14 @@ async def _open(
         refusals=refusals,
         attendance=attendance,
     )
-    fleets = Fleets(sites, runtime, journal, poses, utc_now=lambda: datetime.now(UTC))
+    fleets = Fleets(
+        sites,
+        runtime,
+        journal,
+        poses,
+        utc_now=lambda: datetime.now(UTC),
+        most_open=settings.limits.open_requests,
+    )
     push = Push(
         journal,
         runtime.dialogues,

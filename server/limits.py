@@ -22,6 +22,7 @@ SetLimitName = Literal[
     "check_s",
     "running_runs",
     "sites",
+    "open_requests",
     "connections",
     "connections_per_principal",
     "strangers",
@@ -101,6 +102,8 @@ class Limits(BaseModel):
     """Runs that have not ended, at a time; each in a simulated world may take a process."""
     sites: AtLeastOne = 8
     """Sites that are open, at a time; each may take a process."""
+    open_requests: AtLeastOne = 500
+    """Requests of one fleet that have not ended; each planned occurrence and each series is one."""
     connections: AtLeastOne = 500
     """Connections to the service at a time."""
     connections_per_principal: AtLeastOne = 50

@@ -285,6 +285,11 @@ class Dispatcher:
         stops = stops_by_booking(self._state.fleet, now_s)
         return [view_of(booking, stops) for booking in self._state.bookings.values()]
 
+    def count_open(self) -> int:
+        """How many requests have not ended: each occurrence that is planned, and each series."""
+        open_ = sum(booking.open for booking in self._state.bookings.values())
+        return open_ + sum(not series.over for series in self._state.series.values())
+
     def view(self, name: str, now_s: float | None = None) -> RequestView:
         """How far a request has come, for who reads that then. Raises `NotFoundError`."""
         if name in self._state.series:

@@ -194,7 +194,7 @@ def _lasting(happening: Lasting, begin: Deed, end: Deed) -> list[Due]:
 
 
 async def _cancel(fleet: "FleetAtWork", request: str) -> None:
-    await fleet.cancel(request, local_author())
+    await fleet.requesters.cancel(request, local_author())
 
 
 async def _events(service: "Service") -> AsyncIterator[ev.Event]:

@@ -57,7 +57,7 @@ class AskedRobotView(View):
 def asked_robot(fleet: "FleetAtWork", robot: str) -> AskedRobotView:
     """What somebody finds at a robot's touch screen. Raises `NotFoundError`."""
     return AskedRobotView(
-        site=fleet.site, robot=robot, here=fleet.stands_at(robot), kinds=fleet.kinds
+        site=fleet.site, robot=robot, here=fleet.stands_at(robot), kinds=fleet.requesters.kinds
     )
 
 
@@ -65,7 +65,7 @@ async def understand(fleet: "FleetAtWork", asked: WordsAsked) -> UnderstoodView:
     """What is asked for, with a name and by the clock of the site. Raises `NotFoundError`."""
     here = None if asked.robot is None else fleet.stands_at(asked.robot)
     now_min = None if asked.clock is None else _minute_of(asked.clock)
-    places = fleet.spoken_places
+    places = fleet.requesters.spoken_places
     found = await asyncio.to_thread(understood, asked.words, places, here=here, now_min=now_min)
     if isinstance(found, AskedBack):
         return UnderstoodView(question=found.question)

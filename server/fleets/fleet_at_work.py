@@ -5,16 +5,13 @@ import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import datetime
-from functools import cached_property
 from typing import Literal, TypeVar
 from uuid import UUID
 
 from mend.errors import RefusalError
-from mend.fleet.asking.spoken_places import SpokenPlaces
-from mend.fleet.dispatch.booking import Answer, AnyRequest, RequestView
+from mend.fleet.dispatch.booking import RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
 from mend.fleet.dispatch.leg import Finding, Found, Leg
-from mend.fleet.requests import RequestKind
 from mend.fleet.right_of_way.right_of_way import Yielding
 from mend.robots.link.messages import Poses
 from mend.server.background import Endless
@@ -28,22 +25,20 @@ from mend.server.fleets.fleet_news import FleetNews
 from mend.server.fleets.fleet_record import Errand, FleetRecord
 from mend.server.fleets.found_ways import FoundWays
 from mend.server.fleets.held_cabins import HeldCabins
-from mend.server.fleets.leg_task import doable_kinds, require_doable, taken_out
+from mend.server.fleets.leg_task import taken_out
 from mend.server.fleets.legs_under_way import LegsUnderWay
 from mend.server.fleets.making_way import who_makes_way
 from mend.server.fleets.meeting_watch import MeetingWatch
 from mend.server.fleets.meetings import Meetings, Occupation
 from mend.server.fleets.operators import Operators
 from mend.server.fleets.place_names import PlaceNames
-from mend.server.fleets.request_refused import RequestRefusedError
+from mend.server.fleets.requesters import Requesters
 from mend.server.fleets.robot_findings import finding_of, findings
 from mend.server.fleets.runs import Runs
-from mend.server.journal import events as ev
 from mend.server.journal.journal import Journal
 from mend.server.poses.bases import SeenBase, in_scene
 from mend.server.sites.requests import FleetOptions
 from mend.server.sites.site import Site
-from mend.tasks.plugins import load_plugins
 
 T = TypeVar("T")
 
@@ -87,8 +82,12 @@ class FleetAtWork:
         pace: float | None,
         utc_now: Callable[[], datetime],
         kept: FleetRecord | None = None,
+        *,
+        most_open: int,
     ) -> None:
-        """`kept`: what was known beside the dispatcher when the service stopped."""
+        """`kept`: what was known beside the dispatcher when the service stopped; `most_open`: so
+        many requests may be open.
+        """
         self.dispatcher = dispatcher
         self._site = site
         self.places = places
@@ -126,13 +125,13 @@ class FleetAtWork:
             () if kept is None else kept.errands,
         )
         self.operators = Operators(self._book, self._errands, self._legs)
+        self.requesters = Requesters(self._book, most_open)
         meetings = Meetings(
             dispatcher.building, site.frames, places.names, self._occupation, site.base_of
         )
         self._meeting_watch = MeetingWatch(
             meetings, site.make_way, self._have_met, lambda: self.shown_s
         )
-        self._behaviors = load_plugins("mend.behaviors")
         self._asked_aside: dict[str, str] = {}
         """Where robots that rest are to go, as they stand in the way of others."""
         self._running: list[asyncio.Task[None]] = []
@@ -371,52 +370,11 @@ class FleetAtWork:
         return place if place in self.places.names else None
 
     @property
-    def kinds(self) -> list[RequestKind]:
-        """What may be asked of its robots."""
-        return doable_kinds(self._behaviors)
-
-    @cached_property
-    def spoken_places(self) -> SpokenPlaces:
-        """The places as people say them."""
-        return SpokenPlaces(self.places.names)
-
-    @property
     def pace(self) -> float | None:
         """Seconds of the site's clock per second; None where it goes as fast as it can."""
         return self._pace
 
-    # --- What people ask ----------------------------------------------------------------------
-
-    async def submit(self, request: AnyRequest, author: ev.Author | None) -> RequestView:
-        """Book a request. Raises `RequestRefusedError`, what `Dispatcher.submit` does, and
-        `WrongInputError` for what no robot does, or where none goes.
-        """
-        self._require_doable(request)
-        first = request.name if request.recurrence is None else f"{request.name}/1"
-        async with self._book.told(author, request.name):
-            return await self._book.in_thread(
-                lambda now_s: self._booked(first, self.dispatcher.submit(request, now_s)),
-                self.now_s,
-            )
-
-    async def change(self, name: str, request: AnyRequest, author: ev.Author | None) -> RequestView:
-        """Other words for what nobody has set out for. Raises what `submit` does."""
-        self._require_doable(request)
-        async with self._book.told(author, name):
-            return await self._book.in_thread(
-                lambda now_s: self._booked(name, self.dispatcher.change(name, request, now_s)),
-                self.now_s,
-            )
-
-    def _booked(self, name: str, answer: Answer) -> RequestView:
-        if not answer.booked:
-            raise RequestRefusedError(name, answer)
-        return self.dispatcher.view(name)
-
-    async def cancel(self, name: str, author: ev.Author | None) -> RequestView | None:
-        """What was asked for is not wanted any more. Raises as `Dispatcher.cancel`."""
-        async with self._book.told(author, name):
-            return await self._book.in_thread(self.dispatcher.cancel, name, self.now_s)
+    # --- What others ask of it --------------------------------------------------------------------
 
     async def break_off_errands(self) -> None:
         """No robot goes anywhere without a leg; over once those have ended that had begun."""
@@ -429,11 +387,6 @@ class FleetAtWork:
         """Who answers robots in the legs that begin from now on."""
         async with self._book.at_once:
             self._options = self._options.model_copy(update={"answers": answers})
-
-    def _require_doable(self, request: AnyRequest) -> None:
-        for place in request.places:
-            self.places.in_scene(place)
-        require_doable(request, self._behaviors)
 
     @property
     def errands(self) -> Mapping[str, Errand]:

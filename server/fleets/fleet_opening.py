@@ -36,6 +36,7 @@ class FleetOpener(Protocol):
         runs: Runs,
         journal: Journal,
         utc_now: Callable[[], datetime],
+        most_open: int,
     ) -> FleetAtWork:
         """Raises `ValidationError` for what was kept and cannot be read."""
         ...
@@ -48,6 +49,7 @@ def open_fleet(
     runs: Runs,
     journal: Journal,
     utc_now: Callable[[], datetime],
+    most_open: int,
 ) -> FleetAtWork:
     """A `FleetOpener`."""
     assert record.fleet is not None, "it takes requests"
@@ -61,7 +63,18 @@ def open_fleet(
     )
     places = PlaceNames(building, record.scene)
     pace = None if record.speed == "max" else record.speed
-    return FleetAtWork(site, dispatcher, places, record.fleet, runs, journal, pace, utc_now, was)
+    return FleetAtWork(
+        site,
+        dispatcher,
+        places,
+        record.fleet,
+        runs,
+        journal,
+        pace,
+        utc_now,
+        was,
+        most_open=most_open,
+    )
 
 
 def _transfer_place(building: Building, places: PlaceNames, name: str) -> str:

@@ -57,12 +57,15 @@ class Fleets:
         poses: SiteRecords,
         *,
         utc_now: Callable[[], datetime],
+        most_open: int,
     ) -> None:
+        """`most_open`: so many requests of each fleet may be open."""
         self._sites = sites
         self._runs = runs
         self._journal = journal
         self._poses = poses
         self._utc_now = utc_now
+        self._most_open = most_open
         self._fleets: dict[UUID, FleetAtWork] = {}
         self._loading = asyncio.Lock()
         self._opener: FleetOpener | None = None
@@ -132,7 +135,9 @@ class Fleets:
             if record.site in self._fleets:
                 return
             site = self._sites.site(record.site)
-            fleet = self._opener(site, record, kept, self._runs, self._journal, self._utc_now)
+            fleet = self._opener(
+                site, record, kept, self._runs, self._journal, self._utc_now, self._most_open
+            )
             self._fleets[record.site] = fleet
             site.follow_bases(await self._followed(site, fleet))
             fleet.start()
@@ -159,18 +164,18 @@ class Fleets:
     ) -> "tuple[UUID, RequestView]":
         """Book a request; where, and how far it is. Raises `RequestRefusedError` and others."""
         fleet = await self._of(site)
-        return fleet.site, await fleet.submit(request, author)
+        return fleet.site, await fleet.requesters.submit(request, author)
 
     async def change(
         self, site: UUID | None, name: str, request: "AnyRequest", author: Author | None
     ) -> "tuple[UUID, RequestView]":
         """Other words for a request that nobody has set out for."""
         fleet = await self._of(site)
-        return fleet.site, await fleet.change(name, request, author)
+        return fleet.site, await fleet.requesters.change(name, request, author)
 
     async def cancel(self, site: UUID | None, name: str, author: Author | None) -> None:
         """What was asked for is not wanted any more; what is fetched goes back."""
-        await (await self._of(site)).cancel(name, author)
+        await (await self._of(site)).requesters.cancel(name, author)
 
     async def request(self, site: UUID | None, name: str) -> "tuple[UUID, RequestView]":
         """How far a request is. Raises `NotFoundError`."""

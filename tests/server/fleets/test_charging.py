@@ -168,6 +168,7 @@ async def charging(*starts: str) -> AsyncIterator[Work]:
         journal,
         None,
         lambda: now,
+        most_open=100,
     )
     try:
         yield Work(site, runs, journal, fleet)
@@ -193,7 +194,7 @@ async def test_a_robot_with_nothing_to_do_charges_and_then_does_what_comes() -> 
         work.site.batteries["r0"] = 0.95
         at_charger.ended.set_result(("finished", True))
         await until(lambda: not work.fleet.errands)
-        await work.fleet.submit(visit(place="c"), None)
+        await work.fleet.requesters.submit(visit(place="c"), None)
         (await work.runs.nth(2)).ended.set_result(("finished", True))
         await work.until("visit", RequestStatus.DONE)
 
@@ -204,7 +205,7 @@ async def test_who_holds_enough_leaves_for_what_is_to_be_done(share: float) -> N
         work.site.batteries["r0"] = 0.3
         work.fleet.start()
         at_charger = await work.runs.nth(1)
-        await work.fleet.submit(visit(place="c"), None)
+        await work.fleet.requesters.submit(visit(place="c"), None)
         await until(lambda: bool(work.fleet.dispatcher.fleet.stops()["r0"]))
         assert not at_charger.ended.done(), "it holds too little to leave"
         work.site.batteries["r0"] = share
@@ -219,7 +220,7 @@ async def test_the_only_robot_leaves_its_charger_for_what_has_become_due_meanwhi
         work.site.batteries["r0"] = 0.3
         work.fleet.start()
         at_charger = await work.runs.nth(1)
-        await work.fleet.submit(visit(place="c"), None)
+        await work.fleet.requesters.submit(visit(place="c"), None)
         await until(lambda: bool(work.fleet.dispatcher.fleet.stops()["r0"]))
         for time_s, share in ((5.0, LEAVES_AT - 0.01), (6.0, LEAVES_AT)):
             assert not at_charger.ended.done()
@@ -271,7 +272,7 @@ async def test_an_errand_that_ends_while_it_is_broken_off_ends_once_and_others_b
         work.site.batteries["r0"] = 0.3
         work.fleet.start()
         await work.runs.nth(1)
-        await work.fleet.submit(visit(place="c"), None)
+        await work.fleet.requesters.submit(visit(place="c"), None)
         work.runs.aborted.clear()
         work.site.batteries["r0"] = LEAVES_AT
         work.site.changed()
@@ -292,7 +293,7 @@ async def test_who_could_not_charge_does_not_try_it_again_at_once() -> None:
         work.fleet.start()
         (await work.runs.nth(1)).ended.set_result(("failed", False))
         await until(lambda: not work.fleet.errands)
-        await work.fleet.submit(visit(place="c"), None)
+        await work.fleet.requesters.submit(visit(place="c"), None)
         instead = await work.runs.nth(2)
         assert instead.behavior == "go_to"
 
@@ -300,5 +301,5 @@ async def test_who_could_not_charge_does_not_try_it_again_at_once() -> None:
 async def test_robots_whose_batteries_nobody_knows_of_stay() -> None:
     async with charging("b") as work:
         work.fleet.start()
-        await work.fleet.submit(visit(place="c"), None)
+        await work.fleet.requesters.submit(visit(place="c"), None)
         assert (await work.runs.nth(1)).behavior == "go_to"

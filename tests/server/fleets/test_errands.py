@@ -53,7 +53,7 @@ async def test_what_is_asked_meanwhile_begins_once_the_robot_is_there() -> None:
     async with working("a") as work:
         await work.fleet.operators.send("r0", "d", None)
         going = await work.runs.nth(1)
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         assert await work.status("tea") is RequestStatus.BOOKED
         assert len(work.runs.runs) == 1
         going.ended.set_result(("finished", True))
@@ -81,7 +81,7 @@ async def test_who_is_at_work_or_on_its_way_or_away_is_not_sent() -> None:
             await work.fleet.operators.send("r7", "b", None)
         with pytest.raises(NotFoundError):
             await work.fleet.operators.send("r0", "attic", None)
-        await work.fleet.submit(visit(place="b"), None)
+        await work.fleet.requesters.submit(visit(place="b"), None)
         await work.runs.nth(1)
         with pytest.raises(ConflictError, match="'r0' is at work for 'visit' at f/b: send it once"):
             await work.fleet.operators.send("r0", "c", None)

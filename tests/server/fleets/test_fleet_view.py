@@ -44,7 +44,7 @@ async def test_time_goes_on_with_what_robots_show_where_they_report_nothing() ->
 
 async def test_what_a_robot_is_at_is_told_apart_from_where_it_is_sent() -> None:
     async with working("a", "e") as work:
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         await work.runs.nth(1)
         await work.fleet.operators.send("r1", "d", None)
         first, second = (await view_of(work)).robots
@@ -89,7 +89,7 @@ async def test_who_found_a_way_closed_is_known_after_a_restart() -> None:
 
 async def test_records_of_an_older_mend_have_neither_errands_nor_closed_ways() -> None:
     async with working("a") as work:
-        await work.fleet.submit(visit(), None)
+        await work.fleet.requesters.submit(visit(), None)
         await work.runs.nth(1)
         kept = (await work.journal.documents(KIND))[str(work.site.id)]
         document = FleetRecord.model_validate_json(kept).model_dump_json(

@@ -219,17 +219,20 @@ def _fleet(
     journal: SqliteJournal,
     of: Dispatcher,
     kept: FleetRecord | None = None,
+    most_open: int = 100,
 ) -> FleetAtWork:
     places, options = PlaceNames(office(), SCENE), FleetOptions()
     now = datetime(2026, 1, 2, tzinfo=UTC)
-    return FleetAtWork(site, of, places, options, runs, journal, None, lambda: now, kept)
+    return FleetAtWork(
+        site, of, places, options, runs, journal, None, lambda: now, kept, most_open=most_open
+    )
 
 
 @asynccontextmanager
-async def working(*starts: str, refuse: int = 0) -> AsyncIterator[Work]:
+async def working(*starts: str, refuse: int = 0, most_open: int = 100) -> AsyncIterator[Work]:
     site, journal = FakeSite(), SqliteJournal(":memory:")
     runs = FakeRuns(site, refuse)
-    fleet = _fleet(site, runs, journal, dispatcher_for(*starts))
+    fleet = _fleet(site, runs, journal, dispatcher_for(*starts), most_open=most_open)
     fleet.start()
     try:
         yield Work(site, runs, journal, fleet)
@@ -240,7 +243,7 @@ async def working(*starts: str, refuse: int = 0) -> AsyncIterator[Work]:
 
 async def test_what_is_asked_for_is_fetched_and_handed_over_by_one_robot() -> None:
     async with working("a") as work:
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         fetching = await work.runs.nth(1)
         assert fetching.behavior == "collect_item"
         assert fetching.parameters == {"place": "b", "item": "tea"}
@@ -265,7 +268,7 @@ async def test_that_time_goes_on_while_legs_are_decided_fails_nothing(
 
         monkeypatch.setattr(work.site, "whereabouts", where)
         for name, place in (("one", "b"), ("other", "d")):
-            await work.fleet.submit(visit(name=name, place=place), None)
+            await work.fleet.requesters.submit(visit(name=name, place=place), None)
         for number in (1, 2):
             (await work.runs.nth(number)).ended.set_result(("finished", True))
         for name in ("one", "other"):
@@ -275,7 +278,7 @@ async def test_that_time_goes_on_while_legs_are_decided_fails_nothing(
 
 async def test_of_what_was_brought_nobody_says_who_has_it() -> None:
     async with working("a") as work:
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         (await work.runs.nth(1)).ended.set_result(("finished", True))
         (await work.runs.nth(2)).ended.set_result(("finished", True))
         await work.until("tea", RequestStatus.DONE)
@@ -287,7 +290,7 @@ async def test_of_what_was_brought_nobody_says_who_has_it() -> None:
 
 async def test_a_leg_is_in_the_journal_before_its_robot_hears_of_it() -> None:
     async with working("a") as work:
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         await work.runs.nth(1)
         kept = (await work.journal.documents(KIND))[str(SITE)]
         (leg,) = FleetRecord.model_validate_json(kept).dispatcher.under_way
@@ -305,7 +308,7 @@ async def _legs_of(journal: SqliteJournal) -> list[tuple[str, str, int]]:
 
 async def test_the_journal_tells_when_legs_begin_and_end_once_each_over_a_restart() -> None:
     async with working("a") as work:
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         fetching = await work.runs.nth(1)
         assert await _legs_of(work.journal) == [("leg_begun", "r0", 1)]
         await work.fleet.stop()
@@ -329,7 +332,7 @@ async def test_the_journal_tells_what_was_driven_for_a_leg_unless_the_robot_bega
 ) -> None:
     async with working("a") as work:
         work.site.odometers["r0"] = Odometer("b1", Driven(way_m=100.0, barred_s=5.0))
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         fetching = await work.runs.nth(1)
         work.site.odometers["r0"] = Odometer(boot, Driven(way_m=107.5, barred_s=7.0))
         fetching.ended.set_result(("finished", True))
@@ -341,7 +344,7 @@ async def test_the_journal_tells_what_was_driven_for_a_leg_unless_the_robot_bega
 async def _taken_out_while_it_drives(work: Work) -> None:
     """At 40 s, by what it shows; since it set out, at 100 m, it has not said what it drove."""
     work.site.odometers["r0"] = Odometer("b1", Driven(way_m=100.0, barred_s=5.0))
-    await work.fleet.submit(asked(), None)
+    await work.fleet.requesters.submit(asked(), None)
     await work.runs.nth(1)
     work.site.rolls_on.add("r0")
     work.site.shown_s = 40.0
@@ -384,7 +387,7 @@ async def test_what_a_robot_drove_is_not_known_that_never_says_that_it_stands(
 async def test_what_a_robot_drove_is_not_known_that_is_gone() -> None:
     async with working("a") as work:
         work.site.odometers["r0"] = Odometer("b1", Driven(way_m=100.0, barred_s=5.0))
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         going = await work.runs.nth(1)
         work.site.gone.add("r0")
         going.ended.set_result(("failed", False))
@@ -400,7 +403,7 @@ async def test_what_an_operator_tells_is_dated_by_when_it_is_told() -> None:
 
 async def test_after_a_restart_the_same_run_goes_on() -> None:
     async with working("a") as work:
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         fetching = await work.runs.nth(1)
         await work.fleet.stop()
         kept = (await work.journal.documents(KIND))[str(SITE)]
@@ -417,14 +420,14 @@ async def test_after_a_restart_the_same_run_goes_on() -> None:
 async def test_what_cannot_be_begun_now_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(leg_execution, "TRIES_AGAIN_S", 0.0)
     async with working("a", refuse=3) as work:
-        await work.fleet.submit(visit(), None)
+        await work.fleet.requesters.submit(visit(), None)
         (await work.runs.nth(1)).ended.set_result(("finished", True))
         await work.until("visit", RequestStatus.DONE)
 
 
 async def test_a_robot_that_is_too_early_waits_at_the_place() -> None:
     async with working("a") as work:
-        await work.fleet.submit(asked(earliest_s=600.0), None)
+        await work.fleet.requesters.submit(asked(earliest_s=600.0), None)
         going = await work.runs.nth(1)
         assert (going.behavior, going.parameters) == ("go_to", {"place": "b", "near_m": MEETS_M})
         assert 500.0 < work.site.time.latest_s < 600.0
@@ -435,7 +438,7 @@ async def test_a_robot_that_is_too_early_waits_at_the_place() -> None:
 
 async def test_somebody_who_comes_stays_as_long_as_was_asked() -> None:
     async with working("a") as work:
-        await work.fleet.submit(visit(stay_s=120.0), None)
+        await work.fleet.requesters.submit(visit(stay_s=120.0), None)
         going = await work.runs.nth(1)
         came_s = max(0.0, work.site.time.latest_s)
         going.ended.set_result(("finished", True))
@@ -445,7 +448,7 @@ async def test_somebody_who_comes_stays_as_long_as_was_asked() -> None:
 
 async def test_what_failed_is_tried_again_later_and_fails_with_the_reason() -> None:
     async with working("a") as work:
-        await work.fleet.submit(visit(), None)
+        await work.fleet.requesters.submit(visit(), None)
         for number in (1, 2, 3):
             (await work.runs.nth(number)).ended.set_result(("failed", False))
         await work.until("visit", RequestStatus.FAILED)
@@ -456,14 +459,14 @@ async def test_what_failed_is_tried_again_later_and_fails_with_the_reason() -> N
 
 async def test_a_leg_that_ends_while_it_is_broken_off_is_not_begun_again() -> None:
     async with working("a") as work:
-        await work.fleet.submit(visit(), None)
+        await work.fleet.requesters.submit(visit(), None)
         await work.runs.nth(1)
         work.runs.aborted.clear()
-        await work.fleet.cancel("visit", None)
+        await work.fleet.requesters.cancel("visit", None)
         async with asyncio.timeout(PATIENCE_S):
             while await work.fleet.read(lambda all_: bool(all_.legs_under_way())):  # noqa: ASYNC110
                 await asyncio.sleep(0)
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         work.runs.aborted.set()
         fetching = await work.runs.nth(2)
         assert fetching.robot == "r0"
@@ -471,16 +474,16 @@ async def test_a_leg_that_ends_while_it_is_broken_off_is_not_begun_again() -> No
 
 async def test_what_is_cancelled_is_broken_off() -> None:
     async with working("a") as work:
-        await work.fleet.submit(visit(), None)
+        await work.fleet.requesters.submit(visit(), None)
         going = await work.runs.nth(1)
-        await work.fleet.cancel("visit", None)
+        await work.fleet.requesters.cancel("visit", None)
         await work.until("visit", RequestStatus.CANCELLED)
         assert going.ended.result() == ("aborted", False)
 
 
 async def test_another_robot_takes_over_from_one_that_is_gone() -> None:
     async with working("a", "e") as work:
-        await work.fleet.submit(visit(place="b"), None)
+        await work.fleet.requesters.submit(visit(place="b"), None)
         going = await work.runs.nth(1)
         assert going.robot == "r0"
         work.site.gone.add("r0")
@@ -493,7 +496,7 @@ async def test_another_robot_takes_over_from_one_that_is_gone() -> None:
 
 async def test_a_robot_that_is_back_works_again_where_it_stands() -> None:
     async with working("a") as work:
-        await work.fleet.submit(visit(place="b"), None)
+        await work.fleet.requesters.submit(visit(place="b"), None)
         going = await work.runs.nth(1)
         work.site.gone.add("r0")
         going.ended.set_result(("failed", False))
@@ -511,7 +514,7 @@ async def test_a_robot_that_is_back_works_again_where_it_stands() -> None:
 
 async def test_a_robot_that_is_taken_out_breaks_off_and_another_takes_over() -> None:
     async with working("a", "e") as work:
-        await work.fleet.submit(visit(place="b"), None)
+        await work.fleet.requesters.submit(visit(place="b"), None)
         going = await work.runs.nth(1)
         assert going.robot == "r0"
         await work.fleet.operators.take_out("r0", "its wheel squeaks", None)
@@ -528,7 +531,7 @@ async def test_a_robot_that_is_taken_out_breaks_off_and_another_takes_over() -> 
 
 async def _with_tea_aboard_r0_fails(work: Work) -> FakeRun:
     """It is taken out with what it is to hand over; the run in which another one fetches that."""
-    await work.fleet.submit(asked(), None)
+    await work.fleet.requesters.submit(asked(), None)
     (await work.runs.nth(1)).ended.set_result(("finished", True))
     assert (await work.runs.nth(2)).behavior == "hand_over_item"
     work.site.standing["r0"] = (20.0, 0.0, 0.0)
@@ -611,9 +614,9 @@ async def test_a_robot_that_is_out_of_service_works_only_once_it_is_put_back() -
         kept = (await work.journal.documents(KIND))[str(SITE)]
         assert FleetRecord.model_validate_json(kept).out_of_service == {"r0": "its wheel squeaks"}
         with pytest.raises(RequestRefusedError, match="no robot works"):
-            await work.fleet.submit(visit(), None)
+            await work.fleet.requesters.submit(visit(), None)
         await work.fleet.operators.put_back("r0", None)
-        await work.fleet.submit(visit(), None)
+        await work.fleet.requesters.submit(visit(), None)
         (await work.runs.nth(1)).ended.set_result(("finished", True))
         await work.until("visit", RequestStatus.DONE)
         with pytest.raises(ConflictError, match="is in service"):
@@ -624,9 +627,9 @@ async def test_a_way_that_somebody_found_blocked_keeps_robots_off_it() -> None:
     async with working("a") as work:
         await work.fleet.operators.found(WayReport(finding="blocked", between=["b", "c"]), None)
         with pytest.raises(RequestRefusedError):
-            await work.fleet.submit(visit(place="d", latest_s=200.0), None)
+            await work.fleet.requesters.submit(visit(place="d", latest_s=200.0), None)
         await work.fleet.operators.found(WayReport(finding="open", between=["b", "c"]), None)
-        await work.fleet.submit(visit(place="d", latest_s=200.0), None)
+        await work.fleet.requesters.submit(visit(place="d", latest_s=200.0), None)
         assert (await work.runs.nth(1)).parameters == {"place": "d", "near_m": MEETS_M}
 
 
@@ -660,7 +663,7 @@ async def test_a_fault_within_ends_the_leg_and_not_the_fleet(
     async with working("a") as work:
         monkeypatch.setattr(work.runs, "start_run_of", broken)
         work.site.standing["r0"] = (1.0, 0.0, 0.0)
-        await work.fleet.submit(visit(), None)
+        await work.fleet.requesters.submit(visit(), None)
         await work.until("visit", RequestStatus.FAILED)
         reason = await work.fleet.read(lambda all_: all_.view("visit").reason)
         events = await work.journal.read(0, 1000)
@@ -672,7 +675,7 @@ async def test_a_fault_within_ends_the_leg_and_not_the_fleet(
 
 async def test_what_somebody_had_left_out_is_not_done() -> None:
     async with working("a") as work:
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         (await work.runs.nth(1)).ended.set_result(("finished", True))
         bringing = await work.runs.nth(2)
         assert bringing.behavior == "hand_over_item"
@@ -687,13 +690,13 @@ async def test_what_somebody_had_left_out_is_not_done() -> None:
 
 async def test_a_robot_with_nothing_to_do_makes_way_for_one_that_comes() -> None:
     async with working("b", "e") as work:
-        await work.fleet.submit(visit(place="c"), None)
+        await work.fleet.requesters.submit(visit(place="c"), None)
         first = await work.runs.nth(1)
         assert first.robot == "r0"
         first.ended.set_result(("finished", True))
         await work.until("visit", RequestStatus.DONE)
         await work.fleet.operators.take_out("r0", "it is to stay", None)
-        await work.fleet.submit(visit("again", place="c"), None)
+        await work.fleet.requesters.submit(visit("again", place="c"), None)
         assert (await work.runs.nth(2)).robot == "r1"
         await work.fleet.operators.put_back("r0", None)
         away = await work.runs.nth(3)
@@ -733,15 +736,15 @@ async def test_no_plan_is_made_or_read_in_the_event_loop(monkeypatch: pytest.Mon
     async with working("a", "c") as work:
         for name in every:
             monkeypatch.setattr(Dispatcher, name, watched(name))
-        await work.fleet.submit(visit("wait", place="b", stay_s=5.0), None)
-        await work.fleet.submit(asked(earliest_s=6000.0), None)
+        await work.fleet.requesters.submit(visit("wait", place="b", stay_s=5.0), None)
+        await work.fleet.requesters.submit(asked(earliest_s=6000.0), None)
         (await work.runs.nth(1)).ended.set_result(("finished", True))
         await work.until("wait", RequestStatus.DONE)
         way = WayReport(finding="blocked", between=["f/d", "f/e"])
         await work.fleet.operators.found(way, None)
         await work.fleet.operators.take_out("r1", "a wheel squeaks", None)
         await work.fleet.operators.put_back("r1", None)
-        await work.fleet.cancel("tea", None)
+        await work.fleet.requesters.cancel("tea", None)
         await work.fleet.requests()
     assert set(threads) >= {"_advance", "snapshot", "view", "views", "wakes_s", "taken_out"}
     assert [name for name, seen in threads.items() if get_ident() in seen] == []

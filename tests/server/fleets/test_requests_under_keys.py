@@ -33,7 +33,7 @@ async def test_an_answer_that_was_lost_is_made_of_what_was_booked(
     recurrence: Recurrence | None, name: str
 ) -> None:
     async with working("a") as work:
-        await work.fleet.submit(asked(recurrence=recurrence), ANNA)
+        await work.fleet.requesters.submit(asked(recurrence=recurrence), ANNA)
         kept = await work.journal.find_request("anna", "one", 0.0)
         assert kept is not None
         answer = await answered(work, kept.seq)
@@ -45,5 +45,5 @@ async def test_an_answer_that_was_lost_is_made_of_what_was_booked(
 async def test_what_is_refused_leaves_its_key_free_to_ask_once_more() -> None:
     async with working("a") as work:
         with pytest.raises(RequestRefusedError):
-            await work.fleet.submit(asked(latest_s=1.0), ANNA)
+            await work.fleet.requesters.submit(asked(latest_s=1.0), ANNA)
         assert await work.journal.find_request("anna", "one", 0.0) is None

@@ -61,7 +61,15 @@ class Work:
         )
         names, options = PlaceNames(building, SCENE), FleetOptions()
         self.fleet = FleetAtWork(
-            self.site, self.dispatcher, names, options, self.runs, self.journal, None, _now
+            self.site,
+            self.dispatcher,
+            names,
+            options,
+            self.runs,
+            self.journal,
+            None,
+            _now,
+            most_open=100,
         )
 
     async def __aenter__(self) -> "Work":
@@ -122,7 +130,7 @@ def _now() -> datetime:
 async def test_what_a_robot_finds_counts_until_one_has_passed_there(issue: str, words: str) -> None:
     async with Work(RING) as work:
         work.site.stands_still = True
-        await work.fleet.submit(visit(place="c"), None)
+        await work.fleet.requesters.submit(visit(place="c"), None)
         going = await work.runs.nth(1)
         await work.raised(going, issue, "f/b", "f/c")
         await work.until(lambda all_: BC in all_.closed_until_s())
@@ -144,7 +152,7 @@ async def test_what_a_robot_finds_counts_until_one_has_passed_there(issue: str, 
 
 async def test_what_a_robot_goes_round_by_itself_is_closed_to_all() -> None:
     async with Work(RING) as work:
-        await work.fleet.submit(visit(place="c"), None)
+        await work.fleet.requesters.submit(visit(place="c"), None)
         going = await work.runs.nth(1)
         await work.found(going, "blocked", "f/b", "f/c")
         await work.until(lambda _: work.site.kept_off == {BC})
@@ -180,7 +188,7 @@ def test_what_another_robot_bars_that_works_is_closed_to_nobody(
 
 async def test_what_was_closed_before_a_restart_is_kept_off_after_it() -> None:
     async with Work(RING) as work:
-        await work.fleet.submit(visit(place="c"), None)
+        await work.fleet.requesters.submit(visit(place="c"), None)
         await work.found(await work.runs.nth(1), "blocked", "f/b", "f/c")
         await work.until(lambda _: work.site.kept_off == {BC})
         kept = (await work.journal.documents(KIND))[str(SITE)]
@@ -191,7 +199,7 @@ async def test_what_was_closed_before_a_restart_is_kept_off_after_it() -> None:
 
 async def test_where_no_other_way_leads_people_help_and_the_plan_stays() -> None:
     async with Work(ROW) as work:
-        await work.fleet.submit(visit(place="c"), None)
+        await work.fleet.requesters.submit(visit(place="c"), None)
         going = await work.runs.nth(1)
         await work.raised(going, "blocked", "f/b", "f/c")
         # What comes after it has been heard too says that this one was.
@@ -202,7 +210,7 @@ async def test_where_no_other_way_leads_people_help_and_the_plan_stays() -> None
 
 async def test_before_people_are_asked_a_robot_from_the_other_side_goes_instead() -> None:
     async with Work(ROW, starts="ae") as work:
-        await work.fleet.submit(visit(place="b"), None)
+        await work.fleet.requesters.submit(visit(place="b"), None)
         going = await work.runs.nth(1)
         assert (going.robot, work.site.asks_after_s) == ("r0", OTHERS_S)
         work.site.standing["r0"] = (0.0, 0.0, 0.0)
@@ -229,7 +237,7 @@ async def test_others_are_asked_once_and_what_nobody_takes_over_people_are_asked
     tried: list[Found] = []
     monkeypatch.setattr(Dispatcher, "take_over", lambda _self, found, _now_s: tried.append(found))
     async with Work(ROW, starts="ae") as work:
-        await work.fleet.submit(visit(place="b"), None)
+        await work.fleet.requesters.submit(visit(place="b"), None)
         going = await work.runs.nth(1)
         await work.found(going, "blocked", "f/a", "f/b")
         await work.raised(going, "blocked", "f/a", "f/b")

@@ -46,7 +46,7 @@ def test_a_robot_waits_for_nobody_where_people_are_not_asked(fields: dict[str, A
 
 async def test_a_request_tells_what_the_robot_waits_for_that_is_next_to_do_something() -> None:
     async with working("a") as work:
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         waiting = waiting_robots([dialogue(), dialogue(OTHER)])
         (booked,) = await work.fleet.requests()
         view = followed(SITE, booked, {"r0": RUN}.get, waiting)
@@ -57,7 +57,7 @@ async def test_a_request_tells_what_the_robot_waits_for_that_is_next_to_do_somet
 
 async def test_what_is_read_later_than_it_was_expected_is_late_by_the_clock_that_is_shown() -> None:
     async with working("a") as work:
-        await work.fleet.submit(asked(), None)
+        await work.fleet.requesters.submit(asked(), None)
         await work.runs.nth(1)
         (before,) = await work.fleet.requests()
         work.site.shown_s = 500.0
