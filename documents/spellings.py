@@ -3,10 +3,13 @@
 NODE = r"^/(\d+(/\d+)*)?$"
 """The path of a node in its tree."""
 
+_UNSEEN = r"\x00-\x1f\x7f-\x9f\u200b\u2028-\u202e\u2066-\u2069\ufeff"
+"""Control characters, spaces without width, breaks, and what has text run the other way."""
+
 NAME = r"^[A-Za-z][A-Za-z0-9_\-]{0,63}$"
-WORDS = r"^[^\s/\x00-\x1f]+( [^\s/\x00-\x1f]+)*$"
-SEEN_CHARACTERS = r"^[^\x00-\x1f\x7f]+$"
-SEEN_CHARACTERS_OR_NONE = r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*$"
+WORDS = rf"^[^\s/{_UNSEEN}]+( [^\s/{_UNSEEN}]+)*$"
+SEEN_CHARACTERS = rf"^[^{_UNSEEN}]+$"
+SEEN_CHARACTERS_OR_NONE = rf"^[^{_UNSEEN}]*$"
 CAMERA = r"^[a-z][a-z0-9_]{0,31}$"
 PHRASE = r"^[a-z_]{1,32}$"
 SHA256 = r"^[0-9a-f]{64}$"

@@ -1,7 +1,8 @@
 """What pydantic finds wrong with a part of a document, as problems with lines and sentences."""
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
@@ -11,6 +12,7 @@ from mend.documents.document import LinedMapping, LinedSequence
 from mend.documents.plain_mistakes import what_it_must_be
 from mend.documents.problem import Problem, list_names
 from mend.documents.unit import model_at, unit_at, unit_of_name
+from mend.errors import WrongInputError
 
 _MAX_VALUE_CHARACTERS = 60
 _OF_NUMBERS = ("greater_", "less_", "float_", "int_", "finite_")
@@ -42,6 +44,18 @@ def validate_part(model: type[Model], part: LinedMapping) -> tuple[Model | None,
         ]
     except (RecursionError, ValueError):
         return None, [Problem(part.line, None, "values nest too deeply here")]
+
+
+@contextmanager
+def refusing(model: type[BaseModel], what: str | None = None) -> Iterator[None]:
+    """Have what a model does not take be a `WrongInputError`, a sentence per mistake; `what`: of
+    what they are."""
+    try:
+        yield
+    except ValidationError as error:
+        said = [describe_mistake(each, model) for each in error.errors(include_url=False)]
+        of = "" if what is None else f"{what}: "
+        raise WrongInputError(of + "; ".join(said), said) from error
 
 
 def describe_mistake(mistake: ErrorDetails, model: type[BaseModel]) -> str:

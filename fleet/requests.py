@@ -11,12 +11,12 @@ from enum import StrEnum
 from math import inf
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import AfterValidator, Field, ValidationError, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from mend.documents.quotation_marks import single_marks
 from mend.documents.spellings import NAME, SEEN_CHARACTERS
 from mend.documents.strict_model import StrictModel
-from mend.documents.validation import describe_mistake
+from mend.documents.validation import refusing
 from mend.errors import WrongInputError
 from mend.fleet.scheduling.problem import Item, Visit, Window
 from mend.tasks.transitions import Transitions
@@ -306,8 +306,5 @@ def request_of(document: Mapping[str, Any]) -> GoToRoom | DeliverMessage | Escor
     if not isinstance(kind, str) or kind not in list(RequestKind):
         raise WrongInputError(f"'kind' must be one of {', '.join(REQUESTS)}")
     model = REQUESTS[RequestKind(kind)]
-    try:
+    with refusing(model):
         return model.model_validate({**document, "kind": RequestKind(kind)})
-    except ValidationError as error:
-        said = [describe_mistake(each, model) for each in error.errors(include_url=False)]
-        raise WrongInputError("; ".join(said), said) from error

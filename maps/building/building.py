@@ -98,6 +98,19 @@ class Floor(StrictModel):
             not len(crossed_by(np.array([x, y, at.x, at.y]), self.wall_segments)) for at in places
         )
 
+    def lanes_twice(self) -> Mapping[int, int]:
+        """The lanes that lead no other way than an earlier one, by their numbers."""
+        ways: dict[tuple[str, str], int] = {}
+        twice = {}
+        for number, lane in enumerate(self.lanes):
+            a, b = lane.between
+            leads = [(a, b)] if lane.one_way else [(a, b), (b, a)]
+            if all(way in ways for way in leads):
+                twice[number] = ways[a, b]
+            for way in leads:
+                ways.setdefault(way, number)
+        return twice
+
     @cached_property
     def vector_map(self) -> VectorMap:
         """Its walls, and its doors as if they were shut."""

@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +58,7 @@ def read_building_text(text: str, *, source: str = "building") -> Building:
 def check_building(document: BuildingDocument) -> list[Mistake]:
     """What keeps robots from driving through a building as it says; empty where nothing does."""
     mistakes = [each for name, floor in document.floors.items() for each in _of_floor(name, floor)]
-    mistakes += _of_elevators(document)
+    mistakes += [*_of_heights(document), *_of_elevators(document)]
     if mistakes:
         return mistakes
     building = Building(document)
@@ -88,18 +89,45 @@ def _of_floor(name: str, floor: Floor) -> Iterator[Mistake]:
             )
         elif lane.between[0] == lane.between[1]:
             yield where, f"a lane from '{lane.between[0]}' to itself leads nowhere"
+    for number, earlier in floor.lanes_twice().items():
+        a, b = floor.lanes[number].between
+        told = f"the lane from '{a}' to '{b}' is there already: it is lane {earlier}"
+        yield (*at, "lanes", number), told
+    for number, (x0, y0, x1, y1) in enumerate(floor.walls):
+        if (x0, y0) == (x1, y1):
+            yield (*at, "walls", number), f"the wall begins and ends at ({x0:g}, {y0:g})"
+    yield from _of_doors(at, floor)
+
+
+def _of_doors(at: Location, floor: Floor) -> Iterator[Mistake]:
+    there: dict[frozenset[tuple[float, float]], str] = {}
     for door, each in floor.doors.items():
         where = (*at, "doors", door)
         if each.posts[0] == each.posts[1]:
             yield where, f"the posts of the door '{door}' are in one place"
+        elif (other := there.setdefault(frozenset(each.posts), door)) != door:
+            yield where, f"the door '{door}' is where the door '{other}' is"
         if any(not opens < shuts for opens, shuts in each.open_s):
             yield where, f"the door '{door}' shuts before it opens"
 
 
+def _of_heights(document: BuildingDocument) -> Iterator[Mistake]:
+    for (below, low), (name, floor) in pairwise(document.floors.items()):
+        if floor.height < low.height:
+            yield (
+                ("floors", name, "height"),
+                f"floors come from the lowest to the highest, but '{name}' is at "
+                f"{floor.height:g} m and '{below}' before it at {low.height:g} m",
+            )
+
+
 def _of_elevators(document: BuildingDocument) -> Iterator[Mistake]:
+    taken: dict[tuple[str, str], str] = {}
     for name, elevator in document.elevators.items():
         for floor, place in elevator.stops.items():
             where: Location = ("elevators", name, "stops", floor)
+            if (other := taken.setdefault((floor, place), name)) != name:
+                yield where, f"the elevator '{other}' stops at '{floor}/{place}' already"
             if floor not in document.floors:
                 yield where, f"there is no floor '{floor}'; there are {list_names(document.floors)}"
             elif place not in document.floors[floor].places:

@@ -13,6 +13,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
+from mend.documents.validation import refusing
 from mend.errors import WrongInputError
 from mend.maps.building.building import (
     BuildingDocument,
@@ -121,13 +122,14 @@ def _floor(graph: _Graph, walls: VectorMap | None, cabins: Sequence[int]) -> Flo
         each.id: (round(each.loc.x, _DECIMALS), round(each.loc.y, _DECIMALS))
         for each in graph.nodes
     }
-    # Robots take no stairs.
-    edges = [each for each in graph.edges if not each.has_stairs]
+    # Robots take no stairs; an edge may be there in both directions.
+    once = {_ends(each): each for each in reversed(graph.edges) if not each.has_stairs}
+    edges = [each for each in graph.edges if once.get(_ends(each)) is each]
     for each in edges:
         missing = [end for end in (each.s0_id, each.s1_id) if end not in at]
         if missing:
             raise WrongInputError(f"an edge leads to node {missing[0]}, which is not there")
-    on_lanes = Counter(end for each in _apart(edges) for end in each)
+    on_lanes = Counter(end for each in once for end in each)
     in_cabins = {end for each in edges if each.has_elevator for end in (each.s0_id, each.s1_id)}
 
     def kind(number: int) -> PlaceKind:
@@ -136,16 +138,19 @@ def _floor(graph: _Graph, walls: VectorMap | None, cabins: Sequence[int]) -> Flo
         is_end = on_lanes[number] == 1 and number not in in_cabins
         return PlaceKind.ROOM if is_end else PlaceKind.WAYPOINT
 
+    places = {}
+    for number, (x, y) in at.items():
+        if number in on_lanes:
+            with refusing(FloorPlace, f"node {number}"):
+                places[f"n{number}"] = FloorPlace(x=x, y=y, kind=kind(number))
+    lanes = []
+    for each in edges:
+        between = f"n{each.s0_id}", f"n{each.s1_id}"
+        with refusing(Lane, f"the edge from node {each.s0_id} to node {each.s1_id}"):
+            lanes.append(Lane(between=between, speed_m_s=each.max_speed))
     return Floor(
-        places={
-            f"n{number}": FloorPlace(x=x, y=y, kind=kind(number))
-            for number, (x, y) in at.items()
-            if number in on_lanes
-        },
-        lanes=tuple(
-            Lane(between=(f"n{each.s0_id}", f"n{each.s1_id}"), speed_m_s=each.max_speed)
-            for each in edges
-        ),
+        places=places,
+        lanes=tuple(lanes),
         walls=() if walls is None else tuple(tuple(row) for row in walls.segments.tolist()),
         doors={
             f"door_{each.s0_id}_{each.s1_id}": _door(at[each.s0_id], at[each.s1_id], each)
@@ -155,9 +160,8 @@ def _floor(graph: _Graph, walls: VectorMap | None, cabins: Sequence[int]) -> Flo
     )
 
 
-def _apart(edges: Sequence[_Edge]) -> set[tuple[int, int]]:
-    """The ends of edges, each once however often and in whichever direction it is there."""
-    return {(min(each.s0_id, each.s1_id), max(each.s0_id, each.s1_id)) for each in edges}
+def _ends(edge: _Edge) -> tuple[int, int]:
+    return min(edge.s0_id, edge.s1_id), max(edge.s0_id, edge.s1_id)
 
 
 def _door(a: tuple[float, float], b: tuple[float, float], edge: _Edge) -> Door:

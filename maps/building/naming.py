@@ -11,10 +11,23 @@ LONGEST = 64
 _MOST_NAMED = 5
 
 
+def plain_name(text: str) -> str:
+    """As much of a text as a name may have, in words; empty where that is nothing.
+
+    Without what stands between a floor and a place, and what cannot be seen.
+    """
+    seen = "".join(c for c in text.replace("/", "-") if c.isprintable() or c.isspace())
+    return _cut(" ".join(seen.split()), LONGEST)
+
+
 def unlike(name: str, others: Container[str], heard: Callable[[str], str] = str) -> str:
     """The name, or one with a number where others are `heard` alike."""
-    tries = (f"{name[: LONGEST - 1 - len(str(number))]}_{number}" for number in count(2))
-    return next(each for each in chain([name[:LONGEST]], tries) if heard(each) not in others)
+    tries = (f"{_cut(name, LONGEST - 1 - len(str(number)))}_{number}" for number in count(2))
+    return next(each for each in chain([_cut(name, LONGEST)], tries) if heard(each) not in others)
+
+
+def _cut(name: str, longest: int) -> str:
+    return name[:longest].rstrip()
 
 
 def with_plain_door_names(document: BuildingDocument, notes: list[str]) -> BuildingDocument:

@@ -8,12 +8,11 @@ they are degrees of longitude and latitude.
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
+from mend.documents.validation import refusing
 from mend.errors import WrongInputError
 from mend.maps.building.building import (
     BuildingDocument,
@@ -26,62 +25,12 @@ from mend.maps.building.building import (
     Lane,
     PlaceKind,
 )
-from mend.maps.building.naming import unlike
+from mend.maps.building.naming import plain_name, unlike
+from mend.maps.building.open_rmf_frames import Matrix, Similarity, frames_of
+from mend.maps.building.open_rmf_plan import Edge, Level, Lift, Plan, Vertex, property_of
 from mend.maps.building.tidying import Imported, tidied
 
-Matrix = NDArray[np.float64]
-
-EARTH_M = 6_378_137.0
-"""The equator's radius (WGS 84)."""
-
 _DECIMALS = 3
-
-Text = Annotated[str, BeforeValidator(str)]
-"""Names may be numbers there."""
-Coordinate = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
-"""Of a drawing, in pixels, metres or degrees."""
-Properties = dict[str, tuple[int, Any]]
-Vertex = (
-    tuple[Coordinate, Coordinate, float]
-    | tuple[Coordinate, Coordinate, float, Text]
-    | (tuple[Coordinate, Coordinate, float, Text, Properties])
-)
-Edge = tuple[int, int] | tuple[int, int, Properties]
-Fiducial = tuple[Coordinate, Coordinate, Text]
-
-
-class _Lenient(BaseModel):
-    model_config = ConfigDict(extra="ignore")
-
-
-class _Level(_Lenient):
-    elevation: float = 0.0
-    vertices: list[Vertex] = []
-    lanes: list[Edge] = []
-    walls: list[Edge] = []
-    doors: list[Edge] = []
-    measurements: list[Edge] = []
-    fiducials: list[Fiducial] = []
-
-
-class _Lift(_Lenient):
-    """`x`, `y` in its reference level's drawing; `width` along its turned x axis, in metres."""
-
-    level_doors: dict[Text, list[Text]] = {}
-    reference_floor_name: Text | None = None
-    x: Coordinate = 0.0
-    y: Coordinate = 0.0
-    yaw: float = 0.0
-    width: float = 0.0
-    depth: float = 0.0
-
-
-class _Plan(_Lenient):
-    name: Text = "building"
-    coordinate_system: Literal["reference_image", "wgs84", "cartesian_meters"] = "reference_image"
-    reference_level_name: Text | None = None
-    levels: dict[Text, _Level]
-    lifts: dict[Text, _Lift] = {}
 
 
 def import_open_rmf(content: Any, graphs: Sequence[int] = ()) -> Imported:
@@ -89,105 +38,36 @@ def import_open_rmf(content: Any, graphs: Sequence[int] = ()) -> Imported:
 
     Raises `WrongInputError`, pydantic's `ValidationError` for what is no such plan.
     """
-    plan = _Plan.model_validate(content)
+    plan = Plan.model_validate(content)
     if not plan.levels:
         raise WrongInputError("the plan has no levels")
     for name, level in plan.levels.items():
         _require_vertices(name, level)
     notes: list[str] = []
-    frames = _frames(plan)
+    frames = frames_of(plan)
     order = sorted(plan.levels, key=lambda each: plan.levels[each].elevation)
     shafts = _shafts(plan, frames)
     read = {
         name: _read_level(name, plan.levels[name], frames[name], graphs, shafts, notes)
         for name in order
     }
-    elevators = _elevators(plan, read, notes)
-    floors = {name: each.floor for name, each in read.items()}
-    document = BuildingDocument(building=plan.name, floors=floors, elevators=elevators)
+    called = _floor_names(order, notes)
+    document = BuildingDocument(
+        building=plain_name(plan.name) or "building",
+        floors={called[name]: each.floor for name, each in read.items()},
+        elevators=_elevators(plan, read, called, notes),
+    )
     return tidied(Imported(document, notes))
 
 
-# --- From pixels to metres --------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class _Similarity:
-    """Turns, scales and shifts points (n, 2)."""
-
-    linear: Matrix
-    shift: Matrix
-
-    def __call__(self, points: Matrix) -> Matrix:
-        return np.asarray(points @ self.linear.T + self.shift)
-
-
-def _frames(plan: _Plan) -> dict[str, _Similarity]:
-    """How each level's vertices become metres in the frame of the reference level."""
-    if plan.coordinate_system == "wgs84":
-        return dict.fromkeys(plan.levels, _from_globe(plan))
-    if plan.coordinate_system == "cartesian_meters":
-        return dict.fromkeys(plan.levels, _Similarity(np.eye(2), np.zeros(2)))
-    reference = plan.reference_level_name or next(iter(plan.levels))
-    if reference not in plan.levels:
-        raise WrongInputError(f"the plan has no level '{reference}', which it names as reference")
-    own = {name: _in_metres(name, each, plan) for name, each in plan.levels.items()}
-    to = _fiducials(plan.levels[reference], own[reference])
-    return {
-        name: _laid_over(own[name], _fiducials(each, own[name]), to)
-        for name, each in plan.levels.items()
-    }
-
-
-def _in_metres(name: str, level: _Level, plan: _Plan) -> _Similarity:
-    """By its own measurements, or where it has none by those of all other levels."""
-    scales = _scales(level) or [each for other in plan.levels.values() for each in _scales(other)]
-    if not scales:
-        raise WrongInputError(
-            f"nothing on level '{name}' is measured: how long a pixel is, is unknown"
-        )
-    scale = float(np.mean(scales))
-    return _Similarity(np.diag([scale, -scale]), np.zeros(2))
-
-
-def _scales(level: _Level) -> list[float]:
-    """Metres per pixel, by each measured edge."""
-    found = []
-    for each in level.measurements:
-        a, b = (level.vertices[end] for end in each[:2])
-        pixels, metres = math.hypot(a[0] - b[0], a[1] - b[1]), _property(each, "distance")
-        if pixels > 0.0 and isinstance(metres, int | float) and metres > 0.0:
-            found.append(metres / pixels)
-    return found
-
-
-def _fiducials(level: _Level, frame: _Similarity) -> dict[str, Matrix]:
-    return {name: frame(np.array([[x, y]]))[0] for x, y, name in level.fiducials}
-
-
-def _laid_over(own: _Similarity, of: Mapping[str, Matrix], to: Mapping[str, Matrix]) -> _Similarity:
-    """Turned and shifted so that fiducials of one name lie best above each other.
-
-    Umeyama, "Least-squares estimation of transformation parameters between two point patterns",
-    IEEE PAMI 13 (1991), equations 40 to 42, without a scale.
-    """
-    both = [name for name in of if name in to]
-    if len(both) < 2:
-        return own
-    a, b = (np.array([each[name] for name in both]) for each in (of, to))
-    u, _, v = np.linalg.svd((b - b.mean(0)).T @ (a - a.mean(0)))
-    turn = u @ np.diag([1.0, np.linalg.det(u @ v)]) @ v
-    shift = b.mean(0) - turn @ a.mean(0)
-    return _Similarity(turn @ own.linear, turn @ own.shift + shift)
-
-
-def _from_globe(plan: _Plan) -> _Similarity:
-    """A plane that touches the globe in the middle of the plan."""
-    points = np.array([each[:2] for level in plan.levels.values() for each in level.vertices])
-    middle = points.mean(axis=0) if len(points) else np.zeros(2)
-    north_m = math.radians(1.0) * EARTH_M
-    linear = np.diag([north_m * math.cos(math.radians(middle[1])), north_m])
-    return _Similarity(linear, -linear @ middle)
+def _floor_names(levels: Sequence[str], notes: list[str]) -> dict[str, str]:
+    """What each level is called here."""
+    called: dict[str, str] = {}
+    for level in levels:
+        called[level] = unlike(plain_name(level) or "level", list(called.values()))
+        if called[level] != level:
+            notes.append(f"the level '{level}' is called '{called[level]}' here")
+    return called
 
 
 # --- Levels -----------------------------------------------------------------------------------
@@ -214,7 +94,7 @@ class _Shaft:
         return math.hypot(x, y)
 
 
-def _shafts(plan: _Plan, frames: Mapping[str, _Similarity]) -> list[_Shaft]:
+def _shafts(plan: Plan, frames: Mapping[str, Similarity]) -> list[_Shaft]:
     shafts = []
     for name, each in plan.lifts.items():
         reference = each.reference_floor_name or plan.reference_level_name
@@ -225,7 +105,7 @@ def _shafts(plan: _Plan, frames: Mapping[str, _Similarity]) -> list[_Shaft]:
     return shafts
 
 
-def _served(plan: _Plan, lift: _Lift) -> list[str]:
+def _served(plan: Plan, lift: Lift) -> list[str]:
     """The levels on which a lift has doors; where nothing is said of that, all."""
     return [level for level, doors in lift.level_doors.items() if doors] or list(plan.levels)
 
@@ -241,8 +121,8 @@ class _Read:
 
 def _read_level(
     name: str,
-    level: _Level,
-    frame: _Similarity,
+    level: Level,
+    frame: Similarity,
     graphs: Sequence[int],
     shafts: Sequence[_Shaft],
     notes: list[str],
@@ -250,32 +130,30 @@ def _read_level(
     points = frame(np.array([each[:2] for each in level.vertices], dtype=float).reshape(-1, 2))
     points = points.round(_DECIMALS) + 0.0
     lanes = [
-        each for each in level.lanes if not graphs or _property(each, "graph_idx", 0) in graphs
+        each for each in level.lanes if not graphs or property_of(each, "graph_idx", 0) in graphs
     ]
     on_lanes = sorted({end for each in lanes for end in each[:2]})
     lifts = _lifts_at(name, level, points, on_lanes, shafts)
     names = _names(name, level, on_lanes, lifts, notes)
-    places = {
-        names[each]: FloorPlace(
-            x=points[each][0],
-            y=points[each][1],
-            kind=PlaceKind.ELEVATOR if each in lifts else _kind(level.vertices[each]),
+    places = {}
+    for each in on_lanes:
+        kind = PlaceKind.ELEVATOR if each in lifts else _kind(level.vertices[each])
+        with refusing(FloorPlace, f"vertex {each} of level '{name}'"):
+            places[names[each]] = FloorPlace(x=points[each][0], y=points[each][1], kind=kind)
+    with refusing(Floor, f"level '{name}'"):
+        floor = Floor(
+            height=level.elevation,
+            places=places,
+            lanes=tuple(_lanes(name, lanes, names)),
+            walls=tuple(_segment(points, each) for each in level.walls),
+            doors=_doors(name, level, points, notes),
         )
-        for each in on_lanes
-    }
-    floor = Floor(
-        height=level.elevation,
-        places=places,
-        lanes=tuple(_lanes(lanes, names)),
-        walls=tuple(_segment(points, each) for each in level.walls),
-        doors=_doors(name, level, points, notes),
-    )
     return _Read(floor, names, {lift: names[each] for each, lift in lifts.items()})
 
 
 def _lifts_at(
     name: str,
-    level: _Level,
+    level: Level,
     points: Matrix,
     on_lanes: Sequence[int],
     shafts: Sequence[_Shaft],
@@ -287,7 +165,7 @@ def _lifts_at(
     lifts = {
         each: str(lift)
         for each in on_lanes
-        if (lift := _property(level.vertices[each], "lift_cabin"))
+        if (lift := property_of(level.vertices[each], "lift_cabin"))
     }
     for shaft in shafts:
         if shaft.lift in lifts.values() or name not in shaft.levels:
@@ -302,7 +180,7 @@ def _lifts_at(
     return lifts
 
 
-def _require_vertices(name: str, level: _Level) -> None:
+def _require_vertices(name: str, level: Level) -> None:
     kinds = {
         "lane": level.lanes,
         "wall": level.walls,
@@ -320,7 +198,7 @@ def _require_vertices(name: str, level: _Level) -> None:
 
 def _names(
     name: str,
-    level: _Level,
+    level: Level,
     on_lanes: Sequence[int],
     lifts: Mapping[int, str],
     notes: list[str],
@@ -330,7 +208,7 @@ def _names(
     taken: set[str] = set()
     for each in on_lanes:
         vertex = level.vertices[each]
-        own = _plain(_name_of(vertex)) or _plain(lifts.get(each, "")) or f"v{each}"
+        own = plain_name(_name_of(vertex)) or plain_name(lifts.get(each, "")) or f"v{each}"
         called = unlike(own, taken)
         if called != own:
             notes.append(f"level '{name}' has two places '{own}': one is called '{called}' here")
@@ -339,7 +217,7 @@ def _names(
     lost = [
         own
         for number, each in enumerate(level.vertices)
-        if (own := _plain(_name_of(each))) and number not in names
+        if (own := plain_name(_name_of(each))) and number not in names
     ]
     if lost:
         shown = ", ".join(lost[:5]) + (", ..." if len(lost) > 5 else "")
@@ -347,37 +225,43 @@ def _names(
     return names
 
 
-def _lanes(lanes: Sequence[Edge], names: Mapping[int, str]) -> Iterator[Lane]:
+def _lanes(level: str, lanes: Sequence[Edge], names: Mapping[int, str]) -> Iterator[Lane]:
     for each in lanes:
-        speed = _property(each, "speed_limit", 0.0)
-        yield Lane(
-            between=(names[each[0]], names[each[1]]),
-            one_way=not _property(each, "bidirectional", False),
-            speed_m_s=float(speed) if isinstance(speed, int | float) and speed > 0.0 else None,
-        )
+        speed = property_of(each, "speed_limit", 0.0)
+        between = names[each[0]], names[each[1]]
+        with refusing(Lane, f"the lane from '{between[0]}' to '{between[1]}' of level '{level}'"):
+            lane = Lane(
+                between=between,
+                one_way=not property_of(each, "bidirectional", False),
+                speed_m_s=float(speed) if isinstance(speed, int | float) and speed > 0.0 else None,
+            )
+        yield lane
 
 
-def _doors(name: str, level: _Level, points: Matrix, notes: list[str]) -> dict[str, Door]:
+def _doors(name: str, level: Level, points: Matrix, notes: list[str]) -> dict[str, Door]:
     doors: dict[str, Door] = {}
     for number, each in enumerate(level.doors):
-        own = _plain(str(_property(each, "name", ""))) or f"door{number}"
+        own = plain_name(str(property_of(each, "name", ""))) or f"door{number}"
         called = unlike(own, doors)
         if called != own:
             notes.append(f"level '{name}' has two doors '{own}': one is called '{called}' here")
         x0, y0, x1, y1 = _segment(points, each)
         # What the traffic editor gives no motor is a doorway that people use.
-        itself = _property(each, "plugin", "normal") == "normal"
+        itself = property_of(each, "plugin", "normal") == "normal"
         opens = DoorOpening.ITSELF if itself else DoorOpening.PEOPLE
-        doors[called] = Door(posts=((x0, y0), (x1, y1)), opens=opens)
+        with refusing(Door, f"door {number} of level '{name}'"):
+            doors[called] = Door(posts=((x0, y0), (x1, y1)), opens=opens)
     return doors
 
 
-def _elevators(plan: _Plan, read: Mapping[str, _Read], notes: list[str]) -> dict[str, Elevator]:
+def _elevators(
+    plan: Plan, read: Mapping[str, _Read], floors: Mapping[str, str], notes: list[str]
+) -> dict[str, Elevator]:
     elevators: dict[str, Elevator] = {}
     for lift, each in plan.lifts.items():
         served = _served(plan, each)
         stops = {
-            name: level.cabins[lift]
+            floors[name]: level.cabins[lift]
             for name, level in read.items()
             if name in served and lift in level.cabins
         }
@@ -386,34 +270,23 @@ def _elevators(plan: _Plan, read: Mapping[str, _Read], notes: list[str]) -> dict
                 f"the lift '{lift}' has lanes on {len(stops)} of its levels: it is left out"
             )
         else:
-            called = unlike(_plain(lift) or "lift", elevators)
+            called = unlike(plain_name(lift) or "lift", elevators)
             elevators[called] = Elevator(stops=stops, called_by=Caller.ROBOTS)
     return elevators
 
 
 def _kind(vertex: Vertex) -> PlaceKind:
-    if _property(vertex, "is_charger"):
+    if property_of(vertex, "is_charger"):
         return PlaceKind.CHARGER
-    if _property(vertex, "is_parking_spot"):
+    if property_of(vertex, "is_parking_spot"):
         return PlaceKind.PARKING
-    return PlaceKind.ROOM if _plain(_name_of(vertex)) else PlaceKind.WAYPOINT
+    return PlaceKind.ROOM if plain_name(_name_of(vertex)) else PlaceKind.WAYPOINT
 
 
 def _name_of(vertex: Vertex) -> str:
     return str(vertex[3]) if len(vertex) > 3 else ""
 
 
-def _plain(name: str) -> str:
-    """A name without what stands between a floor and a place."""
-    return " ".join(name.replace("/", "-").split())[:64]
-
-
 def _segment(points: Matrix, edge: Edge) -> tuple[float, float, float, float]:
     (x0, y0), (x1, y1) = points[edge[0]], points[edge[1]]
     return float(x0), float(y0), float(x1), float(y1)
-
-
-def _property(of: Vertex | Edge, name: str, otherwise: Any = None) -> Any:
-    """The value of a property, which comes as a number for its type and the value."""
-    last = of[-1]
-    return last[name][1] if isinstance(last, dict) and name in last else otherwise

@@ -38,14 +38,14 @@ def tidied(imported: Imported) -> Imported:
     if not any(floor.lanes for floor in imported.document.floors.values()):
         raise WrongInputError("no lanes are in the plan: robots would have nowhere to drive")
     notes = [*imported.notes]
-    opened = _with_doorways(Building(_without_points(imported.document, notes)))
+    opened = _with_doorways(Building(_each_once(_without_points(imported.document, notes), notes)))
     clear = _without_lanes_through_walls(Building(opened), notes)
     usable = _connected_part(Building(clear), notes)
     return Imported(with_plain_door_names(usable, notes), notes)
 
 
 def _without_points(document: BuildingDocument, notes: list[str]) -> BuildingDocument:
-    """Without lanes and doors that begin and end in one place."""
+    """Without lanes, doors and walls that begin and end in one place."""
     floors = {}
     for name, floor in document.floors.items():
         points = [each for each in floor.lanes if each.between[0] == each.between[1]]
@@ -57,6 +57,26 @@ def _without_points(document: BuildingDocument, notes: list[str]) -> BuildingDoc
             notes.append(f"floor '{name}': {_counted(shut, 'door')} without width, and left out")
         lanes = tuple(each for each in floor.lanes if each not in points)
         doors = {door: each for door, each in floor.doors.items() if door not in shut}
+        walls = tuple(each for each in floor.walls if each[:2] != each[2:])
+        floors[name] = floor.model_copy(update={"lanes": lanes, "doors": doors, "walls": walls})
+    return document.model_copy(update={"floors": floors})
+
+
+def _each_once(document: BuildingDocument, notes: list[str]) -> BuildingDocument:
+    """Without lanes that lead no other way than another one, and doors where another one is."""
+    floors = {}
+    for name, floor in document.floors.items():
+        twice = floor.lanes_twice()
+        if twice:
+            led = [" to ".join(floor.lanes[number].between) for number in twice]
+            notes.append(f"floor '{name}': {_counted(led, 'lane')} there twice, and taken once")
+        lanes = tuple(each for number, each in enumerate(floor.lanes) if number not in twice)
+        first: dict[frozenset[tuple[float, float]], str] = {}
+        for door, each in floor.doors.items():
+            first.setdefault(frozenset(each.posts), door)
+        doors = {door: floor.doors[door] for door in first.values()}
+        if behind := [door for door in floor.doors if door not in doors]:
+            notes.append(f"floor '{name}': {_counted(behind, 'door')} where another one is")
         floors[name] = floor.model_copy(update={"lanes": lanes, "doors": doors})
     return document.model_copy(update={"floors": floors})
 

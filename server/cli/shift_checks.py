@@ -56,6 +56,11 @@ def _mistakes(
         for field, told in _impossible(each, scene, building):
             yield ("happenings", number, field), f"'happenings.{number}.{field}': {told}"
     places = PlaceNames(building, scene)
+    for number, request in enumerate(document.requests):
+        for field in ("place", "origin", "destination"):
+            name = getattr(request, field, None)
+            if name is not None and (why := _no_goal(places, name)) is not None:
+                yield ("requests", number, field), f"'requests.{number}.{field}': {why}"
     for number, name in enumerate(document.transfer_places):
         if (why := _no_goal(places, name)) is not None:
             yield ("transfer_places", number), f"'transfer_places.{number}': {why}"

@@ -5,9 +5,7 @@ from enum import StrEnum
 from typing import Any
 from uuid import UUID, uuid5
 
-from pydantic import ValidationError
-
-from mend.documents.validation import describe_mistake
+from mend.documents.validation import refusing
 from mend.errors import WrongInputError
 from mend.fleet.dispatch.booking import AnyRequest
 from mend.fleet.dispatch.dispatcher import Dispatcher
@@ -98,11 +96,8 @@ def require_doable(request: AnyRequest, behaviors: Mapping[str, type[Behavior]])
             raise WrongInputError(f"no robot here can do a request of the kind '{request.kind}'")
         parameters = {"place": "there", **_parameters(request, request.name)}
         model = behaviors[name].parameters
-        try:
+        with refusing(model):
             model.model_validate(parameters)
-        except ValidationError as error:
-            said = [describe_mistake(each, model) for each in error.errors(include_url=False)]
-            raise WrongInputError("; ".join(said), said) from error
 
 
 def way_of(place: str, near_m: float = 0.0) -> TaskTreeDefinition:

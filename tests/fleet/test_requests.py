@@ -41,6 +41,13 @@ def test_what_is_written_has_the_quotation_marks_that_robots_can_say(said: str) 
     assert message == message.strip()
 
 
+@pytest.mark.parametrize("unseen", ["\u202e", "\u200b", "\u2066", "\x85", "\ufeff"])
+def test_what_is_said_has_nothing_in_it_that_cannot_be_seen(unseen: str) -> None:
+    with pytest.raises(WrongInputError, match="'what' must have only characters that can be seen"):
+        request_of({**TEA, "what": f"a cup{unseen} of tea"})
+    assert request_of({**TEA, "what": "eine Tasse Tee, שלום"})
+
+
 def test_visit_is_an_item_that_stays_at_its_place() -> None:
     visit = GoToRoom(name="visit", place="b", earliest_s=10.0, latest_s=60.0, stay_s=5.0)
     item = visit.item("visit", TERMS)

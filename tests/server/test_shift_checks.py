@@ -90,6 +90,27 @@ def test_a_transfer_place_that_is_not_there_is_told_with_those_that_are(tmp_path
         refuse(tmp_path, transfers=("F1/w0_0",))
 
 
+@pytest.mark.parametrize(
+    ("wanted", "told"),
+    [
+        ("{kind: go_to_room, name: v, place: F1/no}", "'requests.0.place': "),
+        (f"{{kind: transport, name: v, what: tea, origin: {ROOM}, destination: F9/1}}",
+         "'requests.0.destination': "),
+        ("{kind: go_to_room, name: v, place: F1/w0_0}", "robots are not sent to 'F1/w0_0'"),
+    ],
+)  # fmt: skip
+def test_a_place_of_a_request_that_is_not_there_is_told_with_its_line(
+    tmp_path: Path, wanted: str, told: str
+) -> None:
+    path = tmp_path / "shift.yaml"
+    path.write_text(f"requests:\n  - {wanted}\n", encoding="utf-8")
+    with pytest.raises(RequestFileError) as refused:
+        refuse_impossible(read_requests(path), SCENE, ())
+    assert f"{path}:2: " in str(refused.value)
+    assert told in str(refused.value)
+    assert untold([each.message for each in refused.value.problems], FILES) == []
+
+
 def test_helpers_have_names_and_each_its_own(tmp_path: Path) -> None:
     assert checked_helpers(["ann", "bob"]) == ["ann", "bob"]
     with pytest.raises(CommandLineError, match="has to be a name of 1 to 64 characters"):

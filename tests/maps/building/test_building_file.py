@@ -69,10 +69,30 @@ def test_a_building_is_read_from_a_file(tmp_path: Path) -> None:
         (("kind: room", "kind: cellar"), "'floors.1.places.101.kind' must be"),
         (("building: office\n", ""), "'building' is missing"),
         (('      "101": {x', '      "1/01": {x'), "1/01"),
+        (("{between: [hall, lift], speed_m_s: 0.5}",
+          "{between: [hall, lift]}\n      - {between: [lift, hall], one_way: true}"),
+         ":12: the lane from 'lift' to 'hall' is there already: it is lane 1"),
+        (("[[0.0, 1.5, 0.5, 1.5]", "[[0.0, 1.5, 0.0, 1.5]"),
+         ":12: the wall begins and ends at (0, 1.5)"),
+        (("opens: itself}", "opens: itself}\n      b: {posts: [[1.5, 1.5], [0.5, 1.5]]}"),
+         ":15: the door 'b' is where the door '101' is"),
+        (("height: 3.5", "height: -3.5"),
+         "floors come from the lowest to the highest, but '2' is at -3.5 m and '1' before it at 0"),
+        (('main: {stops: {"1": lift, "2": lift}}',
+          'main: {stops: {"1": lift, "2": lift}}\n  b: {stops: {"2": lift, "1": hall}}'),
+         ":20: the elevator 'main' stops at '2/lift' already"),
+        (("building: office", 'building: "of\\u202Efice"'), "'building' must be words without"),
     ],
 )  # fmt: skip
 def test_a_mistake_is_told_where_it_is(change: tuple[str, str], told: str) -> None:
     assert told in mistakes_of(change)
+
+
+def test_one_way_there_and_another_back_are_two_lanes() -> None:
+    text = OFFICE.replace("[hall, lift]", "[hall, lift], one_way: true").replace(
+        "    walls:", "      - {between: [lift, hall], one_way: true}\n    walls:", 1
+    )
+    assert len(read_building_text(text).floors["1"].lanes) == 3
 
 
 def test_what_is_no_mapping_is_no_building() -> None:

@@ -3,7 +3,7 @@
 import pytest
 
 from mend.maps.building.building import BuildingDocument, Door, Elevator, Floor, FloorPlace
-from mend.maps.building.naming import LONGEST, unlike, with_plain_door_names
+from mend.maps.building.naming import LONGEST, plain_name, unlike, with_plain_door_names
 
 DOOR = Door(posts=((0.0, 0.0), (1.0, 0.0)))
 
@@ -57,3 +57,12 @@ def test_a_name_stays_short_enough() -> None:
 def test_doors_stay_in_their_order(low: list[str]) -> None:
     names, _ = named(low, ["b"])
     assert names == [low, ["b"]]
+
+
+@pytest.mark.parametrize(
+    "given", ["a" * (LONGEST - 1) + " bc", "a" * (LONGEST - 3) + " bc", "a/b\u202e\x01 c"]
+)
+def test_a_name_that_was_cut_is_one_that_a_place_may_have(given: str) -> None:
+    plain = plain_name(given)
+    for name in (plain, unlike(plain, {plain})):
+        assert Floor(places={name: FloorPlace(x=0.0, y=0.0)}).places.keys() == {name}

@@ -194,7 +194,9 @@ def test_what_begins_and_ends_in_one_place_is_left_out() -> None:
 
 
 def test_doors_of_one_level_that_are_called_alike_are_all_kept() -> None:
-    hung = [[3, 4, {"name": [1, each]}] for each in ("null", "null_2", "null")]
+    names = ("null", "null_2", "null")
+    ends = ((3, 4), (3, 5), (2, 4))
+    hung = [[*posts, {"name": [1, name]}] for posts, name in zip(ends, names, strict=True)]
     hotel, _ = imported(plan(L1=level(doors=hung), L2=level(elevation=4)))
     assert list(hotel.floors["L1"].doors) == ["null", "null_2", "null_3"]
 
@@ -213,3 +215,43 @@ def test_lifts_that_are_called_alike_here_are_both_kept() -> None:
     assert {name: set(each.stops.values()) for name, each in hotel.document.elevators.items()} == {
         "a-b": {"a-b"}, "a-b_2": {"a-b_2"},
     }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"elevation": 1e6}, "level 'L1': 'height' must be less than or equal to 10000"),
+        (
+            {"lanes": [lane(0, 1, speed_limit=50.0)]},
+            "the lane from '4102' to 'Lift1' of level 'L1': 'speed_m_s' must be less than or equal to 10",
+        ),
+        (
+            {"vertices": [[9e8, 200.0, 0, 4102], *level()["vertices"][1:]], "measurements": []},
+            "vertex 0 of level 'L1': 'x' must be less than or equal to 10000",
+        ),
+    ],
+)
+def test_a_number_that_cannot_be_is_told_with_what_it_is_of(
+    changes: dict[str, object], told: str
+) -> None:
+    with pytest.raises(WrongInputError) as refused:
+        import_open_rmf(plan(L1=level(**changes), L2=level(elevation=4)))
+    assert told in str(refused.value)
+
+
+def test_names_that_no_building_may_have_become_some_that_it_may() -> None:
+    content = {**plan(**{"L/1": level()}), "name": "hotel \u202e" + "x" * 80}
+    hotel, notes = imported(content)
+    assert list(hotel.floors) == ["L-1"]
+    assert "the level 'L/1' is called 'L-1' here" in notes
+    assert hotel.name == "hotel " + "x" * 58
+
+
+def test_what_is_there_twice_is_taken_once_and_told() -> None:
+    doors = [*level()["doors"], [4, 3, {"name": [1, "back"], "plugin": [1, "none"]}]]
+    walls = [*level()["walls"], [2, 2, {}]]
+    twice = level(lanes=[lane(0, 1), lane(1, 0, bidirectional=False)], doors=doors, walls=walls)
+    hotel, notes = imported(plan(L1=twice))
+    assert (len(hotel.floors["L1"].lanes), list(hotel.floors["L1"].doors)) == (1, ["front"])
+    assert "floor 'L1': 1 lane (Lift1 to 4102) is there twice, and taken once" in notes
+    assert "floor 'L1': 1 door (back) is where another one is" in notes

@@ -133,7 +133,7 @@ def test_what_no_robot_can_do_is_refused_before_it_is_booked() -> None:
         require_doable(PARCEL, {})
     for said in ('She said "no".', "Say «no».", "„Nein“, sagt sie."):
         require_doable(DeliverMessage(name="m", place="101", message=said), behaviors)
-    unseen = DeliverMessage(name="m", place="101", message="no\u200bthing")
+    unseen = DeliverMessage(name="m", place="101", message="no\u00adthing")
     with pytest.raises(WrongInputError, match="only characters that can be seen"):
         require_doable(unseen, behaviors)
     long = Escort(name="e", person="A" * 101, origin="101", destination="102")
