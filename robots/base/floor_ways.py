@@ -7,20 +7,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from mend.maps.building.building import Building, Caller
-from mend.maps.building.cabin import (
-    CABIN_M,
-    cabin_walls,
-    elevator_around,
-    stop_of,
-    waiting_points,
-)
+from mend.maps.building.building import Building
+from mend.maps.building.cabin import CABIN_M, cabin_walls, elevator_around, stop_of
 from mend.maps.building.clearance import clearance_m, is_clear
 from mend.maps.building.crossing import crossed_by
 from mend.maps.building.floor_grid import sampled
 from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 from mend.robots.base.body import BasePose
 from mend.robots.base.closed_ways import NO_WAYS, Closed, Lane
+from mend.robots.base.elevator_rides import ElevatorRides
 from mend.robots.base.lane_access import LaneAccess, nearest_access
 from mend.robots.base.motion.surroundings import NOTHING, Points
 from mend.robots.base.open_door import Posts
@@ -34,8 +29,6 @@ _AROUND_M, _EVERY_M = 6.0, 0.15
 _ROUNDING_M = 1e-6
 _ON_LANE_M = 0.6
 """Who is farther from a lane is not on it."""
-_ASIDE_M = 0.25
-"""So far from the middle of a cabin a robot stands with somebody beside it."""
 _CLOSED_S = 1e5
 """No way leads by what is closed where there is any other."""
 _THROUGH_CABIN_S = 1e10
@@ -59,15 +52,9 @@ class FloorWays:
         self._frame = frame
         self._speed_m_s = speed_m_s
         self._needs_m = needs_m
-        self._turn = turn
+        self._elevators = ElevatorRides(building, frame, needs_m, turn)
+        self._stops = self._elevators.at
         self._walls: dict[str, Points] = {}
-        self._waiting: dict[tuple[str, Point], Sequence[Point]] = {}
-        self._stops = _stops(building)
-        self._cabins = [
-            (floor, stop_of(building, elevator, floor))
-            for elevator, each in building.document.elevators.items()
-            for floor in each.stops
-        ]
         self._all = _without_hours(building, self._stops, lambda _: True)
         self._places = {each.name: each for each in self._all.places}
         self._graphs = {
@@ -125,8 +112,7 @@ class FloorWays:
         if floor == goal_floor:
             return ()
         start, goal = self._on_map(here), self._on_map(to)
-        in_cabin = any(n == floor and math.dist(at, start) < CABIN_M for n, at in self._cabins)
-        if in_cabin:
+        if self._elevators.cabin_around(floor, start) is not None:
             waits_s = NO_WAITS
         # Who stands before one elevator may take another.
         begin = self._first(floor, start, closed)
@@ -137,19 +123,18 @@ class FloorWays:
         for number, (a, b) in enumerate(pairwise(path)):
             if a.floor != b.floor:
                 after = path[number + 2] if number + 2 < len(path) else None
-                rides.append(self._ride(a.name, b.name, after))
+                rides.append(self._elevators.ride(a.name, b.name, after))
         first = rides[0]
         inside = math.dist(start, self._frame.to_scene(first.inside.x, first.inside.y))
         return [replace(first, wait_at=None) if inside < CABIN_M else first, *rides[1:]]
 
     def way_out(self, here: BasePose) -> BasePose | None:
         """Where to get out of the cabin that a pose is in; None where that is in none."""
-        floor, at = self._building.floor_at(here.z), self._on_map(here)
-        for name, stop in self._cabins:
-            if name == floor and math.dist(stop, at) < CABIN_M:
-                out = self._outside(name, stop)
-                return self._pose(name, out, out)
-        return None
+        floor = self._building.floor_at(here.z)
+        if floor is None:
+            return None
+        stop = self._elevators.cabin_around(floor, self._on_map(here))
+        return None if stop is None else self._elevators.way_out(floor, stop)
 
     def elevator_at(self, pose: BasePose) -> str | None:
         """The elevator in whose cabin a pose of any floor is; None where it is in none."""
@@ -247,58 +232,6 @@ class FloorWays:
 
         return NavigationGraph(graph.places, map(now, graph.ways))
 
-    def _ride(self, begin: str, end: str, after: Place | None) -> Ride:
-        """From stop to stop; `after` is where the way leads on from there."""
-        from_floor, to_floor = begin.split("/", 1)[0], end.split("/", 1)[0]
-        elevator = self._stops[begin]
-        stop = stop_of(self._building, elevator, from_floor)
-        stop_there = stop_of(self._building, elevator, to_floor)
-        waits = self._waits(from_floor, stop)
-        if not waits:
-            raise CommandError(f"there is no room to wait for {elevator} on {from_floor}")
-        out = self._outside(to_floor, stop_there) if after is None else (after.x_m, after.y_m)
-        wait = waits[self._turn % len(waits)]
-        return Ride(
-            elevator=elevator,
-            from_floor=from_floor,
-            to_floor=to_floor,
-            wait_at=self._pose(from_floor, wait, stop),
-            inside=self._pose(from_floor, stop, wait),
-            there=self._pose(to_floor, stop_there, out),
-            out_at=self._pose(to_floor, out, out),
-            called=self._building.document.elevators[elevator].called_by is Caller.ROBOTS,
-            between=(begin, end),
-            aside=self._aside(from_floor, stop, wait),
-        )
-
-    def _aside(self, floor: str, stop: Point, wait: Point) -> BasePose | None:
-        """Beside the middle of a cabin; None where walls leave no room on both sides."""
-        away_m, walls = math.dist(stop, wait), self._building.floors[floor].wall_segments
-        off = _ASIDE_M * (wait[1] - stop[1]) / away_m, _ASIDE_M * (stop[0] - wait[0]) / away_m
-        at, other = ((stop[0] + n * off[0], stop[1] + n * off[1]) for n in (1.0, -1.0))
-        if not is_clear(at, other, walls, self._needs_m):
-            return None
-        return self._pose(floor, at, (at[0] + wait[0] - stop[0], at[1] + wait[1] - stop[1]))
-
-    def _outside(self, floor: str, stop: Point) -> Point:
-        waits = self._waits(floor, stop)
-        if not waits:
-            raise CommandError(f"there is no room to get out on {floor}")
-        return waits[self._turn % len(waits)]
-
-    def _waits(self, floor: str, stop: Point) -> Sequence[Point]:
-        """Where one may wait for a cabin, computed once."""
-        if (floor, stop) not in self._waiting:
-            found = waiting_points(self._building.floors[floor], stop, self._needs_m)
-            self._waiting[floor, stop] = found
-        return self._waiting[floor, stop]
-
-    def _pose(self, floor: str, at: Point, facing: Point) -> BasePose:
-        x, y = self._frame.to_robot(*at)
-        to_x, to_y = self._frame.to_robot(*facing)
-        yaw = math.atan2(to_y - y, to_x - x)
-        return BasePose(x, y, yaw, self._building.floors[floor].height)
-
     def _on_one_floor(self, here: BasePose, to: BasePose) -> tuple[str, Point, Point]:
         """The floor, and where both are on it. Raises `CommandError` where it is not one."""
         floor, goal_floor = self._floor(here), self._floor(to)
@@ -351,8 +284,8 @@ class FloorWays:
         ends = [point] if other is None else [point, other]
         stops = [
             stop
-            for name, stop in self._cabins
-            if name == floor and min(math.dist(stop, each) for each in ends) >= CABIN_M
+            for stop in self._elevators.cabins_on(floor)
+            if min(math.dist(stop, each) for each in ends) >= CABIN_M
         ]
         walls, places = self._building.floors[floor].wall_segments, self._graphs[floor].places
         found = nearest_access(point, places, walls, stops, self._needs_m)
@@ -385,8 +318,7 @@ class FloorWays:
         return all(
             (away_m := min(math.dist(a, stop), math.dist(b, stop))) < CABIN_M
             or clearance_m(a, b, np.array([[*stop, *stop]])) >= min(around_m, away_m) - _ROUNDING_M
-            for name, stop in self._cabins
-            if name == floor
+            for stop in self._elevators.cabins_on(floor)
         )
 
     def _floor(self, pose: BasePose) -> str:
@@ -407,15 +339,6 @@ def _sampled(walls: Points, frame: Frame) -> Points:
         points.append(np.linspace((x0, y0), (x1, y1), count))
     placed = [frame.to_robot(x, y) for x, y in np.concatenate(points)]
     return np.array(placed).reshape(-1, 2)
-
-
-def _stops(building: Building) -> dict[str, str]:
-    """The elevator that stops at each place that is a stop."""
-    return {
-        f"{floor}/{place}": name
-        for name, each in building.document.elevators.items()
-        for floor, place in each.stops.items()
-    }
 
 
 def _is_on(floor: str) -> Callable[[str], bool]:
