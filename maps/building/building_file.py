@@ -14,7 +14,7 @@ from mend.documents.kinds_of_files import not_the_kind
 from mend.documents.problem import InvalidFileError, Problem, list_names
 from mend.documents.validation import find_line, show_kind, validate_part
 from mend.maps.building.building import Building, BuildingDocument, Floor
-from mend.maps.building.connection import connected
+from mend.maps.building.connection import connected, usable
 
 Location = tuple[str | int, ...]
 Mistake = tuple[Location, str]
@@ -152,15 +152,17 @@ def _walls_crossed(building: Building) -> Iterator[Mistake]:
 def _unreachable(building: Building) -> Iterator[Mistake]:
     """Places that cannot be reached from the first one, or that nobody gets away from."""
     graph = building.graph
-    labels = connected(graph)
+    labels, fits = connected(graph), usable(graph)
     largest = int(np.bincount(labels).argmax())
-    for number in np.flatnonzero(labels != largest).tolist():
-        floor, place = graph.places[number].name.split("/", 1)
-        inside = graph.places[int(np.flatnonzero(labels == largest)[0])].name
-        yield (
-            ("floors", floor, "places", place),
-            f"no way leads from '{inside}' to '{floor}/{place}' and back",
-        )
+    for number in np.flatnonzero(~fits).tolist():
+        full = graph.places[number].name
+        floor, place = full.split("/", 1)
+        where: Location = ("floors", floor, "places", place)
+        if labels[number] == largest:
+            yield where, f"no lane leads to '{full}' and back from the rest of its floor"
+        else:
+            inside = graph.places[int(np.flatnonzero(labels == largest)[0])].name
+            yield where, f"no way leads from '{inside}' to '{full}' and back"
 
 
 _IN_ONE_LINE = 100

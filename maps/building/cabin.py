@@ -44,7 +44,8 @@ def waiting_points(floor: Floor, stop: Point, needs_m: float) -> Sequence[Point]
     """Where robots may wait that see the cabin, best first; who needs `needs_m` fits there.
 
     They are beside the lanes where there is room, so that whoever gets out gets past, and far
-    enough from each other. Where some can be come to without going through the cabin, all can.
+    enough from each other. Where some can be come to without going through the cabin, by every lane
+    that leads there or by one, all can.
     Empty where there is no room at all.
     """
     lanes = np.array([_ends(floor, each.between) for each in floor.lanes]).reshape(-1, 4)
@@ -61,10 +62,12 @@ def waiting_points(floor: Floor, stop: Point, needs_m: float) -> Sequence[Point]
     ranked += [each for each, so in zip(free, beside, strict=True) if not so]
     lead_there = _lane_points(floor, stop)
 
-    def is_past_cabin(at: Point) -> bool:
-        return all(_leads_past(floor, at, stop, each, needs_m) for each in lead_there)
+    def lanes_past(at: Point) -> list[bool]:
+        return [_leads_past(floor, at, stop, each, needs_m) for each in lead_there]
 
-    return _apart(ranked, is_past_cabin) or _apart(ranked, lambda _: True)
+    # Lanes from both sides of a cabin lead to each other's side on other ways.
+    fits = (lambda at: all(lanes_past(at)), lambda at: any(lanes_past(at)), lambda _: True)
+    return next((found for each in fits if (found := _apart(ranked, each))), ())
 
 
 def _apart(ranked: Sequence[Point], fits: Callable[[Point], bool]) -> Sequence[Point]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from mend.errors import WrongInputError
 from mend.maps.building.building import Building, BuildingDocument, Floor, Lane
-from mend.maps.building.connection import connected
+from mend.maps.building.connection import usable
 from mend.maps.building.naming import with_plain_door_names
 
 Matrix = NDArray[np.float64]
@@ -63,13 +63,13 @@ def _without_points(document: BuildingDocument, notes: list[str]) -> BuildingDoc
 
 
 def _each_once(document: BuildingDocument, notes: list[str]) -> BuildingDocument:
-    """Without lanes that lead no other way than another one, and doors where another one is."""
+    """Without lanes that lead no other way than another one, and doors where another one is.
+
+    A plan may have the same lane in several graphs: nobody needs to hear of that.
+    """
     floors = {}
     for name, floor in document.floors.items():
         twice = floor.lanes_twice()
-        if twice:
-            led = [" to ".join(floor.lanes[number].between) for number in twice]
-            notes.append(f"floor '{name}': {_counted(led, 'lane')} there twice, and taken once")
         lanes = tuple(each for number, each in enumerate(floor.lanes) if number not in twice)
         first: dict[frozenset[tuple[float, float]], str] = {}
         for door, each in floor.doors.items():
@@ -134,12 +134,8 @@ def _without_lanes_through_walls(building: Building, notes: list[str]) -> Buildi
 
 
 def _connected_part(building: Building, notes: list[str]) -> BuildingDocument:
-    labels = connected(building.graph)
-    kept = {
-        place.name
-        for place, label in zip(building.graph.places, labels, strict=True)
-        if label == np.bincount(labels).argmax()
-    }
+    graph = building.graph
+    kept = {place.name for place, so in zip(graph.places, usable(graph), strict=True) if so}
     floors = {}
     for name, floor in building.floors.items():
         places = {key: each for key, each in floor.places.items() if f"{name}/{key}" in kept}

@@ -88,7 +88,11 @@ def told_of(problems: InvalidFileError) -> list[str]:
         ("places: {lift: {x: 5.0, y: 0.0, kind: elevator}}", "places: {}"),
         ("height: 3.5", "height: 1e6"),
         ("height: 3.5", "height: -3.5"),
-        ("{between: [hall, lift], speed_m_s: 0.5}", "{between: [hall, \"101\"]}"),
+        (
+            "    lanes:",
+            "      attic: {x: 9.0, y: 0.0}\n    lanes:\n      - {between: [lift, attic]}",
+        ),
+        ("{between: [hall, lift], speed_m_s: 0.5}", '{between: [hall, "101"]}'),
         ("[0.0, 1.5, 0.5, 1.5]", "[0.0, 1.5, 0.0, 1.5]"),
         ("opens: itself}", "opens: itself}\n      b: {posts: [[1.5, 1.5], [0.5, 1.5]]}"),
         ('"2": lift}}', '"2": lift}}\n  b: {stops: {"1": hall, "2": lift}}'),

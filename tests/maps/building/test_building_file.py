@@ -88,6 +88,12 @@ def test_a_mistake_is_told_where_it_is(change: tuple[str, str], told: str) -> No
     assert told in mistakes_of(change)
 
 
+def test_a_place_behind_an_elevator_is_told_as_robots_drive_through_no_cabin() -> None:
+    behind = "      attic: {x: 9.0, y: 0.0}\n    lanes:\n      - {between: [lift, attic]}\n"
+    told = mistakes_of(("    lanes:\n", behind))
+    assert "no lane leads to '1/attic' and back from the rest of its floor" in told
+
+
 def test_one_way_there_and_another_back_are_two_lanes() -> None:
     text = OFFICE.replace("[hall, lift]", "[hall, lift], one_way: true").replace(
         "    walls:", "      - {between: [lift, hall], one_way: true}\n    walls:", 1

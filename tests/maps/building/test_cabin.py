@@ -95,3 +95,22 @@ def test_a_way_is_clear_of_what_keeps_as_far_from_it_as_it_needs() -> None:
         assert clear == (clearance_m((x0, y0), (x1, y1), walls) >= needs_m)
         told.add(clear)
     assert told == {True, False}
+
+
+def test_where_lanes_come_from_both_sides_who_waits_stands_on_the_side_of_one() -> None:
+    """A corridor too narrow to get past its cabin, with a niche behind that no lane leads to."""
+    sides = {"stop": (0.0, 0.0), "left": (-6.0, 0.0), "right": (6.0, 0.0)}
+    floor = Floor(
+        places={name: FloorPlace(x=x, y=y) for name, (x, y) in sides.items()},
+        lanes=(Lane(between=("stop", "left")), Lane(between=("stop", "right"))),
+        walls=(
+            (-7.0, -0.8, 7.0, -0.8),
+            (-7.0, 0.8, -0.7, 0.8),
+            (0.7, 0.8, 7.0, 0.8),
+            (-0.7, 0.8, -0.7, 4.0),
+            (0.7, 0.8, 0.7, 4.0),
+        ),
+    )
+    waits = waiting_points(floor, (0.0, 0.0), NEEDS_M)
+    assert {x > 0.0 for x, _ in waits} == {True, False}
+    assert max(y for _, y in waits) < 0.8
