@@ -13,6 +13,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
+from mend.documents.problem import list_names
 from mend.documents.validation import refusing
 from mend.errors import WrongInputError
 from mend.maps.building.building import (
@@ -88,6 +89,11 @@ def import_cobot(
                 raise WrongInputError(
                     f"the elevator '{elevator}' stops at node {node} of '{floor}': there is none"
                 )
+        if len(stops) < 2:
+            raise WrongInputError(
+                f"the elevator '{elevator}' needs stops on two floors at least, and has "
+                f"{len(stops)}"
+            )
     document = BuildingDocument(
         building=name,
         floors={
@@ -104,11 +110,18 @@ def import_cobot(
         },
     )
     imported = tidied(Imported(document))
-    return Imported(imported.document, [*imported.notes, *_not_said(imported.document)])
+    return Imported(
+        imported.document, [*imported.notes, *_not_said(imported.document, list(floors))]
+    )
 
 
-def _not_said(document: BuildingDocument) -> Iterator[str]:
+def _not_said(document: BuildingDocument, floors: Sequence[str]) -> Iterator[str]:
     """What the files leave open, and what of it somebody has to say."""
+    if left_out := [floor for floor in floors if floor not in document.floors]:
+        yield (
+            f"no elevator was said to stop on {list_names(left_out)}: left out with all that is "
+            "there (--elevator says where one stops)"
+        )
     if len(document.floors) > 1:
         yield "how high floors are is not said: give each its 'height' before robots drive there"
     for name, floor in document.floors.items():

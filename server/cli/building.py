@@ -292,7 +292,11 @@ def _from_cobot(plans: list[Path], elevators: list[str]) -> "Imported":
         name = each.name.split(".")[0]
         walls = each.with_name(f"{name}.vectormap.json")
         floors[name] = CobotFloor(_read(each), read_vector_map(walls) if walls.exists() else None)
-    cabins = dict(_cabin(each) for each in elevators)
+    cabins: dict[str, dict[str, int]] = {}
+    for name, stops in map(_cabin, elevators):
+        if name in cabins:
+            raise CommandLineError(f"--elevator '{name}' is given twice: say all its stops at once")
+        cabins[name] = stops
     try:
         return import_cobot(plans[0].name.split(".")[0], floors, cabins)
     except ValidationError as error:
@@ -303,11 +307,14 @@ def _cabin(text: str) -> tuple[str, dict[str, int]]:
     name, _, stops = text.partition("=")
     try:
         told = [each.rsplit(":", 1) for each in stops.split(",")]
-        return name, {floor: int(node) for floor, node in told}
+        at = {floor: int(node) for floor, node in told}
     except ValueError:
         raise CommandLineError(
             f"'{text}' is no elevator: say NAME=FLOOR:NODE,FLOOR:NODE, as lift=F1:8,F2:6"
         ) from None
+    if name == "" or len(at) < max(2, len(told)):
+        raise CommandLineError(f"'{text}' is no elevator: give it a name, and a node on two floors")
+    return name, at
 
 
 def _read(path: Path) -> Any:

@@ -96,8 +96,16 @@ def test_what_is_no_plan_is_refused_with_a_sentence(
 def test_an_elevator_that_is_told_wrongly_is_refused(tmp_path: Path) -> None:
     plan = tmp_path / "F1.navigation.json"
     plan.write_text(json.dumps({"nodes": NODES, "edges": EDGES}), encoding="utf-8")
-    with pytest.raises(CommandLineError, match="say NAME=FLOOR:NODE"):
-        run("import", plan, "-o", tmp_path / "x.yaml", "--elevator", "lift")
+    for given, told in (
+        (["lift"], "say NAME=FLOOR:NODE"),
+        (["lift=F1:1"], "'lift=F1:1' is no elevator: give it a name, and a node on two floors"),
+        (["lift=F1:1,F1:2"], "a node on two floors"),
+        (["=F1:1,F2:2"], "give it a name"),
+        (["lift=F1:1,F2:2", "lift=F1:0,F2:0"], "--elevator 'lift' is given twice"),
+    ):
+        options = [part for each in given for part in ("--elevator", each)]
+        with pytest.raises(CommandLineError, match=told):
+            run("import", plan, "-o", tmp_path / "x.yaml", *options)
 
 
 def test_a_shift_is_drawn_for_a_scene_and_says_what_cannot_happen_there(tmp_path: Path) -> None:

@@ -55,6 +55,12 @@ def test_floors_that_nothing_joins_are_left_out() -> None:
     read = import_cobot("lab", {"F1": CobotFloor(HALL), "F2": CobotFloor(small)})
     assert list(read.document.floors) == ["F1"]
     assert "floor 'F2': 2 places (n0, n1) are cut off" in read.notes[0]
+    assert "no elevator was said to stop on 'F2': left out" in read.notes[1]
+
+
+def test_an_elevator_has_stops_on_two_floors() -> None:
+    with pytest.raises(WrongInputError, match="'lift' needs stops on two floors at least, and has"):
+        import_cobot("lab", {"F1": CobotFloor(HALL), "F2": CobotFloor(HALL)}, {"lift": {"F1": 2}})
 
 
 def test_robots_take_no_stairs() -> None:
