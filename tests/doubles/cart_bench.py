@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 from courtyard.cart import PERIOD_S, Cart
 from courtyard.world import Courtyard
 
+from mend.robots.base.companion import Companion
 from mend.robots.base.subsystem import BaseSubsystem
 from mend.robots.base.ways import Ways
 from mend.robots.catalogue import Catalogue
@@ -35,6 +36,7 @@ class CartBench:
         behaviors: Mapping[str, type[Behavior]] | None = None,
         monitors: Mapping[str, type[AnyMonitor]] | None = None,
         ways: Ways | None = None,
+        companion: Companion | None = None,
     ) -> None:
         """`behaviors` and `monitors` are in addition to those that are installed."""
         self.world = Courtyard([Frame(-4.0, -3.0)])
@@ -45,6 +47,7 @@ class CartBench:
             {**load_plugins("mend.behaviors"), **(behaviors or {})},
             {**load_plugins("mend.monitors"), **(monitors or {})},
             ways,
+            companion=companion,
         )
         self.robot = Robot("cart", self.cart, [base])
         self.reports: list[ReportBody] = []

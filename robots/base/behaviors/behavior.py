@@ -22,7 +22,8 @@ class Drive:
 
     `wait_s` passes there before the next step. `phase` says what the step is for: monitors watch
     phases. `near_m`: it is there, too, where it is so near and something keeps it from going on.
-    `leads`: the person who follows; it stands while they do not keep up.
+    `leads`: the person who follows; it stands while they do not keep up. `meets`: it is there, too,
+    where it sees whom it is to meet there, who keeps it from going on.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Drive:
     phase: Phase = Phase.TRAVEL
     near_m: float = 0.0
     leads: str | None = None
+    meets: bool = False
 
 
 @dataclass(frozen=True, slots=True)

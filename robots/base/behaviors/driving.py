@@ -9,6 +9,7 @@ from mend.robots.base.behaviors.passing import Passing
 from mend.robots.base.behaviors.progress import BaseProgress
 from mend.robots.base.behaviors.watch import BaseWatch
 from mend.robots.base.body import BasePose
+from mend.robots.base.companion import CAUGHT_UP_M
 from mend.robots.base.made_way import MadeWay
 from mend.robots.base.motion.headway import Headway
 from mend.robots.execution.command_error import CommandError
@@ -46,9 +47,15 @@ class Driving:
 
     def is_about_at(self, drive: Drive) -> bool:
         """Whether the base is where a drive leads, or as near as is near enough."""
-        here = self._base.body.pose()
-        near = here.distance_m(drive.to) <= drive.near_m and abs(here.z - drive.to.z) < ON_FLOOR_M
-        return near or self.is_at(drive.to)
+        here, company = self._base.body.pose(), self._base.company
+        if abs(here.z - drive.to.z) >= ON_FLOOR_M:
+            return False
+        near = here.distance_m(drive.to) <= drive.near_m or self.is_at(drive.to)
+        return near or (
+            drive.meets
+            and company.is_within(CAUGHT_UP_M)
+            and company.is_at(drive.to, CAUGHT_UP_M, here)
+        )
 
     def take(self, drive: Drive, no_more: Callable[[], bool] = lambda: False) -> Routine[None]:
         """Drive there, or until there is `no_more` reason to. Raises `Interruption`."""

@@ -1,15 +1,18 @@
 """`meet_person`: drive to a place, and wait until somebody is there who is to be escorted."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Annotated, ClassVar
 
 from pydantic import AfterValidator, Field
 
 from mend.documents.strict_model import StrictModel
 from mend.robots.base.behaviors.behavior import (
+    MEETS_M,
     BaseBehavior,
     BaseSituation,
     BaseStep,
+    Drive,
     Meet,
     steps_to,
 )
@@ -31,7 +34,10 @@ class PersonParameters(StrictModel):
 
 
 class MeetPerson(BaseBehavior):
-    """Goes to a place as `go_to` does, and waits there until it sees the person."""
+    """Goes to a place as `go_to` does, and waits there until it sees the person.
+
+    In a narrow place the person may be what keeps it from getting nearer.
+    """
 
     name: ClassVar[str] = "meet_person"
     parameters: ClassVar[type[StrictModel]] = PersonParameters
@@ -40,7 +46,10 @@ class MeetPerson(BaseBehavior):
         assert isinstance(parameters, PersonParameters), "commands are checked before"
         person, place = parameters.person, parameters.place
         require_sight(situation)
-        return [*steps_to(place, situation), Meet(f"meet {person}", person, place)]
+        *there, drive = steps_to(place, situation, MEETS_M)
+        assert isinstance(drive, Drive), "a way ends with a drive"
+        meets = replace(drive, meets=True)
+        return [*there, meets, Meet(f"meet {person}", person, place)]
 
 
 def require_sight(situation: BaseSituation) -> None:
