@@ -187,6 +187,8 @@ class Furniture:
 
     def _fill(self, room: Room, share: float) -> list[Piece]:
         pieces: list[Piece] = []
+        if share <= 0.0:
+            return pieces
         hidden = room.hidden_by(pieces)
         while hidden.sum() < share * room.returns:
             piece = self._find(room, pieces)
