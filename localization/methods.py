@@ -1,6 +1,7 @@
 """The localizers that there are, by name."""
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 
@@ -34,6 +35,7 @@ METHODS: dict[str, MakeLocalizer] = {"enml": _enml, "cgr": _cgr, "mcl": _mcl}
 _WARMING_UPDATES = 12
 
 
+@cache
 def warm_up(method: str) -> None:
     """Compile what a method needs, by a few updates in a made-up room, at a known place and lost.
 

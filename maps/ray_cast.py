@@ -24,15 +24,30 @@ def cast(
     `angles` are radians in the map's frame, in any order. Where nothing is hit within
     `max_range` metres, the range is `max_range` and the index is `NOTHING`.
     """
-    wrapped = np.mod(angles, 2.0 * np.pi)
-    order = np.argsort(wrapped, kind="stable")
-    turned = np.ascontiguousarray(wrapped[order])
+    order, turned = _ascending(angles)
     ranges = np.empty(len(turned))
     indices = np.empty(len(turned), dtype=np.int64)
     cast_sorted(segments, x, y, turned, max_range, ranges, indices)
     found_ranges, found_indices = np.empty_like(ranges), np.empty_like(indices)
     found_ranges[order], found_indices[order] = ranges, indices
     return found_ranges, found_indices
+
+
+def cast_from_each(segments: Matrix, points: Matrix, angles: Matrix, max_range: float) -> Matrix:
+    """The ranges (n, m) of `cast` from each of points (n, 2) along `angles` (m,)."""
+    order, turned = _ascending(angles)
+    ranges = np.empty((len(points), len(turned)))
+    _cast_each_sorted(segments, points, turned, max_range, ranges)
+    found = np.empty_like(ranges)
+    found[:, order] = ranges
+    return found
+
+
+def _ascending(angles: Matrix) -> tuple[Indices, Matrix]:
+    """In which order they ascend within [0, 2 pi), and they in that order."""
+    wrapped = np.mod(angles, 2.0 * np.pi)
+    order = np.argsort(wrapped, kind="stable")
+    return order, np.ascontiguousarray(wrapped[order])
 
 
 @compiled
@@ -96,3 +111,14 @@ def cast_sorted(
                     ranges[low] = distance
                     indices[low] = number
             low += 1
+
+
+@compiled
+def _cast_each_sorted(
+    segments: Matrix, points: Matrix, angles: Matrix, max_range: float, ranges: Matrix
+) -> None:
+    """The kernel of `cast_from_each`; results go to the last."""
+    indices = np.empty(angles.shape[0], np.int64)
+    for number in range(points.shape[0]):
+        x, y = points[number, 0], points[number, 1]
+        cast_sorted(segments, x, y, angles, max_range, ranges[number], indices)

@@ -46,7 +46,8 @@ def is_clear(start: Point, end: Point, segments: Matrix, needs_m: float) -> bool
     beside |= np.maximum(x0, x1) < min(start[0], end[0]) - reach_m
     beside |= np.minimum(y0, y1) > max(start[1], end[1]) + reach_m
     beside |= np.maximum(y0, y1) < min(start[1], end[1]) - reach_m
-    return clearance_m(start, end, segments[~beside]) >= needs_m
+    near = segments[~beside]
+    return not len(near) or clearance_m(start, end, near) >= needs_m
 
 
 def lane_clearance_m(floor: Floor, lane: Lane) -> float:

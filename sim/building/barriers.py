@@ -9,6 +9,7 @@ from mend.maps.building.building import Building, LaneCrossing
 from mend.maps.building.clearance import distances_m
 from mend.maps.building.right_across import right_across
 from mend.sim.building.doors import WorldDoors
+from mend.sim.building.stacked import StackedRows
 
 Matrix = NDArray[np.float64]
 Lane = tuple[str, str]
@@ -20,6 +21,7 @@ class Barriers:
     def __init__(self, building: Building, doors: WorldDoors) -> None:
         self._building, self._doors = building, doors
         self._across: dict[frozenset[str], tuple[str, Matrix]] = {}
+        self._stacked = StackedRows()
         self._locked: dict[frozenset[str], Sequence[str]] = {}
 
     def bar(self, lane: Lane) -> tuple[str, Matrix] | None:
@@ -53,7 +55,7 @@ class Barriers:
     def segments(self, floor: str) -> Matrix:
         """What stands across corridors of a floor (n, 4)."""
         there = [each for on, each in self._across.values() if on == floor]
-        return np.vstack([np.zeros((0, 4)), *there])
+        return self._stacked.of(floor, there)
 
     def is_near(self, floor: str, x: float, y: float, within_m: float) -> bool:
         """Whether something stands across a corridor so near to a point."""

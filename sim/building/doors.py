@@ -13,6 +13,7 @@ from mend.sim.building.door import NOTICES_M, WorldDoor
 Matrix = NDArray[np.float64]
 Circle = tuple[float, float, float]
 Point = tuple[float, float]
+_NONE: Matrix = np.zeros((0, 4))
 
 
 class WorldDoors(Mapping[str, WorldDoor]):
@@ -32,6 +33,7 @@ class WorldDoors(Mapping[str, WorldDoor]):
             for floor, doors in self._on.items()
         }
         self._noticed: dict[str, tuple[tuple[Point, ...], list[bool]]] = {}
+        self._shut: dict[str, tuple[list[bool], Matrix]] = {}
         self._by_name = {each.name: each for doors in self._on.values() for each in doors}
 
     def __getitem__(self, name: str) -> WorldDoor:
@@ -46,10 +48,12 @@ class WorldDoors(Mapping[str, WorldDoor]):
     def let_pass(self, time_s: float, circles: Callable[[str], Sequence[Circle]]) -> None:
         """One cycle: they open for who comes, and fall shut behind them."""
         for floor, doors in self._on.items():
+            heeding = [number for number, each in enumerate(doors) if each.heeds_who_comes]
+            if not heeding:
+                continue
             near = self._near(floor, circles(floor))
-            for each, somebody in zip(doors, near, strict=True):
-                if each.heeds_who_comes:
-                    each.let_pass(time_s, somebody=somebody)
+            for number in heeding:
+                doors[number].let_pass(time_s, somebody=near[number])
 
     def changes_s(self, time_s: float) -> float:
         """When the next one may open or shut by the clock alone; infinite if none does."""
@@ -74,9 +78,13 @@ class WorldDoors(Mapping[str, WorldDoor]):
     def shut(self, floor: str) -> Matrix:
         """The lines (n, 4) between the posts of those that are shut on a floor."""
         if floor not in self._on:
-            return np.zeros((0, 4))
+            return _NONE
         is_shut = [each.is_shut for each in self._on[floor]]
-        return np.asarray(self._segments[floor][is_shut])
+        before, segments = self._shut.get(floor, ([], _NONE))
+        if before != is_shut:
+            segments = np.asarray(self._segments[floor][is_shut])
+            self._shut[floor] = is_shut, segments
+        return segments
 
     def nearest_shut(
         self, floor: str, x: float, y: float, time_s: float

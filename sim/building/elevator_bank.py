@@ -14,6 +14,7 @@ from mend.robots.base.ways import Ride
 from mend.sim.building.building_robot import BuildingRobot
 from mend.sim.building.cabin import Cabin, CabinState, Call
 from mend.sim.building.floor_pose import FloorPose
+from mend.sim.building.stacked import StackedRows
 
 Circle = tuple[float, float, float]
 Point = tuple[float, float]
@@ -66,6 +67,7 @@ class ElevatorBank:
             name: Cabin(name, plan, order, min(plan.stops, key=order.index))
             for name, plan in building.document.elevators.items()
         }
+        self._stacked = StackedRows()
         self._walls = {
             (name, floor): cabin_walls(stop_of(building, name, floor))
             for name, each in self.cabins.items()
@@ -104,7 +106,7 @@ class ElevatorBank:
             if (stops := self._stops[name])
             and (floor == self.room(name) or (floor in stops and not cabin.is_open_at(floor)))
         ]
-        return np.vstack([np.empty((0, 4)), *rows])
+        return self._stacked.of(floor, rows)
 
     def is_in_a_cabin(self, floor: str, x: float, y: float, radius_m: float) -> bool:
         """Whether something round there would be in the room of any cabin."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mend.maps.building.building import Floor
 from mend.maps.building.clearance import distances_m
 from mend.maps.building.crossing import crossed_by
-from mend.maps.ray_cast import cast
+from mend.maps.ray_cast import cast_from_each
 
 Matrix = NDArray[np.float64]
 Point = tuple[float, float]
@@ -82,7 +82,7 @@ class Room:
         self._walls = floor.vector_map.segments
         self._clear = keep_clear
         self._clear_m = clear_m
-        self._looks = _looks_from(keep_clear)
+        self._looks = np.array(_looks_from(keep_clear)).reshape(-1, 2)
 
     @cached_property
     def _bare_m(self) -> Matrix:
@@ -91,8 +91,7 @@ class Room:
 
     def _ranges_m(self, segments: Matrix) -> Matrix:
         """How far each beam of each look goes to segments."""
-        seen = [cast(segments, x, y, _BEAMS, _REACH_M)[0] for x, y in self._looks]
-        return np.array(seen).reshape(len(self._looks), len(_BEAMS))
+        return cast_from_each(segments, self._looks, _BEAMS, _REACH_M)
 
     def hidden_by(self, pieces: Iterable[Piece]) -> NDArray[np.bool_]:
         """Which beams of all looks end at some pieces, in front of the walls."""
@@ -187,6 +186,8 @@ class Furniture:
 
     def _fill(self, room: Room, share: float) -> list[Piece]:
         pieces: list[Piece] = []
+        if share <= 0.0:
+            return pieces
         hidden = room.hidden_by(pieces)
         while hidden.sum() < share * room.returns:
             piece = self._find(room, pieces)

@@ -18,6 +18,8 @@ from mend.sim.building.elevator_bank import ElevatorBank
 from mend.sim.building.floor_pose import FloorPose
 from mend.sim.building.furniture import Furniture
 from mend.sim.building.social_force import KEEP_M
+from mend.sim.building.stacked import StackedRows
+from mend.sim.building.touching import touches_any
 
 Matrix = NDArray[np.float64]
 
@@ -43,21 +45,21 @@ class Space:
         self._building, self._doors, self._barriers = building, doors, barriers
         self._elevators, self._furniture, self._crowd = elevators, furniture, crowd
         self._ends: dict[str, Matrix] = {}
+        self._all, self._seen = StackedRows(), StackedRows()
 
     def segments(self, floor: str) -> Matrix:
         """Walls, shut doors, cabins, furniture and barriers (n, 4)."""
         cabins = self._elevators.walls(floor)
         if floor not in self._building.floors:
             return cabins
-        return np.vstack(
-            [
-                self._building.floors[floor].wall_segments,
-                self._doors.shut(floor),
-                cabins,
-                self._furniture.segments(floor),
-                self._barriers.segments(floor),
-            ]
+        parts = (
+            self._building.floors[floor].wall_segments,
+            self._doors.shut(floor),
+            cabins,
+            self._furniture.segments(floor),
+            self._barriers.segments(floor),
         )
+        return self._all.of(floor, parts)
 
     def seen_by_lasers(self, floor: str) -> Matrix:
         """The same, and the ends of walls: who stands in line with a wall sees how thick it is."""
@@ -66,15 +68,14 @@ class Space:
         if floor not in self._ends:
             walls = self._building.floors[floor].wall_segments
             self._ends[floor] = wall_ends(walls, _WALL_M)
-        return np.vstack([self.segments(floor), self._ends[floor]])
+        return self._seen.of(floor, (self.segments(floor), self._ends[floor]))
 
     def touches(self, at: FloorPose, radius_m: float, but: BuildingRobot | None = None) -> bool:
         """Whether something round would touch anything there."""
         around = self._crowd.circles(at.floor, but)
         if any(math.hypot(x - at.x, y - at.y) < radius + radius_m for x, y, radius in around):
             return True
-        away_m = distances_m(np.array([[at.x, at.y]]), self.segments(at.floor))
-        return bool(away_m[0] < radius_m)
+        return bool(touches_any(self.segments(at.floor), at.x, at.y, radius_m))
 
     def stands_in(self, floor: str, segments: Matrix) -> bool:
         """Whether a robot or a person is where something is to be put."""

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from mend.maps.ray_cast import NOTHING, cast
+from mend.maps.ray_cast import NOTHING, cast, cast_from_each
 
 Matrix = NDArray[np.float64]
 
@@ -78,3 +78,13 @@ def test_a_segment_seen_edge_on_hides_nothing() -> None:
     ranges, indices = cast(segments, 0.0, 0.0, np.array([0.0]), 10.0)
     assert ranges == pytest.approx([3.0])
     assert indices.tolist() == [1]
+
+
+@given(seed=st.integers(0, 2**32 - 1), points=st.integers(0, 5), rays=st.integers(0, 9))
+def test_from_each_of_many_points_the_same_is_seen(seed: int, points: int, rays: int) -> None:
+    rng = np.random.default_rng(seed)
+    segments, froms = rng.uniform(-5.0, 5.0, (7, 4)), rng.uniform(-5.0, 5.0, (points, 2))
+    angles = rng.uniform(-7.0, 7.0, rays)
+    seen = [cast(segments, x, y, angles, 6.0)[0] for x, y in froms.tolist()]
+    each = cast_from_each(segments, froms, angles, 6.0)
+    assert each.tolist() == np.reshape(seen, (points, rays)).tolist()

@@ -114,18 +114,25 @@ class DynamicWindow:
         slowest = max(0.0, now.speed_m_s - change)
         reached *= np.minimum(1.0, max(fastest, slowest) / np.maximum(speeds, 1e-12))[:, None]
         reached = reached[np.hypot(*(reached - moving).T) <= change + 1e-9]
-        turn = self._turns(now, steering.turn_rad, speed)[-1]
+        turn = self._resting_turn(now, steering.turn_rad, speed)
         return np.column_stack([reached, np.full(len(reached), turn)])
 
     def _turns(self, now: Velocity, off_rad: float, speed: float) -> Array:
         """What turns are in the window; the last is the one that comes to rest where it should."""
-        limits = self._limits
-        change = limits.turn_acceleration_rad_s2 * self._period_s
-        most = speed * limits.turn_rad_s
-        low, high = _within(now.turn_rad_s - change, now.turn_rad_s + change, -most, most)
-        rests = min(most, self._to_rest(abs(off_rad), limits.turn_acceleration_rad_s2))
-        ideal = min(max(math.copysign(rests, off_rad), low), high)
-        return np.append(np.linspace(low, high, _TURNS), ideal)
+        turns = np.linspace(*self._turn_window(now, speed), _TURNS)
+        return np.append(turns, self._resting_turn(now, off_rad, speed))
+
+    def _resting_turn(self, now: Velocity, off_rad: float, speed: float) -> float:
+        """The turn in the window that comes to rest where it should, or nearest to it."""
+        low, high = self._turn_window(now, speed)
+        acceleration = self._limits.turn_acceleration_rad_s2
+        rests = min(speed * self._limits.turn_rad_s, self._to_rest(abs(off_rad), acceleration))
+        return min(max(math.copysign(rests, off_rad), low), high)
+
+    def _turn_window(self, now: Velocity, speed: float) -> tuple[float, float]:
+        change = self._limits.turn_acceleration_rad_s2 * self._period_s
+        most = speed * self._limits.turn_rad_s
+        return _within(now.turn_rad_s - change, now.turn_rad_s + change, -most, most)
 
     def _to_rest(self, left: float, acceleration: float) -> float:
         """The velocity that, after one cycle and braking, has come just so far."""

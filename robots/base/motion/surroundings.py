@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mend.robots.base.body import BasePose, RangeScan
+from mend.robots.base.motion.beams import measure_beside
 
 Points = NDArray[np.float64]
 """(n, 2), metres."""
@@ -74,16 +75,15 @@ class _Placed:
     points: Points
 
     def range_m(self, points: Points) -> tuple[Points, Points]:
-        """How far points are from here, and how far the beams next to them see (nan: none is)."""
-        offset = in_frame_of(points, self.at)
+        """How far points are from here, and how far the beams next to them see.
+
+        nan where none is, and of what is not near.
+        """
+        away_m, sees_m = np.empty(len(points)), np.empty(len(points))
+        at = np.array([self.at.x, self.at.y, self.at.yaw])
         angles, ranges_m = self.scan.angles_rad, self.scan.ranges_m
-        bearing = angles[0] + np.remainder(np.arctan2(*offset.T[::-1]) - angles[0], math.tau)
-        after = np.searchsorted(angles, bearing)
-        # A full circle ends where it begins.
-        closed = angles[-1] - angles[0] > math.tau - 2.0 * math.tau / len(angles)
-        beside = np.minimum(ranges_m[after - 1], ranges_m[after % len(angles)])
-        sees_m = np.where((after < len(angles)) | closed, beside, np.nan)
-        return np.hypot(*offset.T), sees_m
+        measure_beside(points, at, angles, ranges_m, _NEAR_M, away_m, sees_m)
+        return away_m, sees_m
 
 
 class Surroundings:
