@@ -13,7 +13,7 @@ from sampled import sample
 from mend.maps.building.building import Building, BuildingDocument, Caller
 from mend.maps.building.cabin import CABIN_M
 from mend.robots.base.companion import CAUGHT_UP_M, FALLS_BEHIND_M, GLIMPSE_S
-from mend.robots.base.floor_ways import FloorWays
+from mend.robots.base.elevator_rides import ElevatorRides
 from mend.robots.link.messages import Finished, Interrupt, IssueDetected, Look, Looked, Resume
 from mend.sim.building.bystander import RADIUS_M
 from mend.sim.building.cabin import CabinState
@@ -157,7 +157,7 @@ def test_who_is_left_on_another_floor_is_met_near_the_elevator_there() -> None:
 def test_who_has_no_room_in_the_cabin_rides_alone_and_is_met_at_its_door(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(FloorWays, "_aside", lambda *_: None)
+    monkeypatch.setattr(ElevatorRides, "_aside", lambda *_: None)
     bench = bench_of(floors=2, dawdling=0.0)
     meet(bench)
     lead(bench, "F2-201")
