@@ -32,7 +32,7 @@ def spoken(identifier: str) -> str:
     if without_mark.startswith(f"{NAMELESS}-"):
         place = _without_joints(without_mark.removeprefix(f"{NAMELESS}-"))
         return worded("thing to be brought from {place}", place=place)
-    return _without_joints(without_mark)
+    return _without_joints(without_mark.replace(f"{NAMELESS}-", f"{NAMELESS} from "))
 
 
 def _without_joints(name: str) -> str:

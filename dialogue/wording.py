@@ -69,7 +69,7 @@ def _words(issue: Issue, outlook: Outlook, *, named: bool) -> Mapping[str, Calla
     """What each field is filled in with, made where a sentence has that field."""
 
     def it() -> Worded:
-        return worded("it") if named else the(issue.object or issue.item or issue.name)
+        return worded("it") if named else _thing(issue)
 
     guesses = dict(zip_longest(_GUESSES, issue.guesses[: len(_GUESSES)]))
     return {
@@ -104,8 +104,28 @@ def _doing(issue: Issue) -> Worded:
     if issue.message is not None:
         return worded("the message for {place}", place=place)
     if issue.person is not None:
-        return worded("the drive with {person} to {place}", person=issue.person, place=place)
+        meets = _is_called_after(issue, "meet_person")
+        told = "the meeting with {person} at {place}" if meets else _WITH_PERSON
+        return worded(told, person=issue.person, place=place)
     return worded("the drive to {place}", place=place)
+
+
+def _thing(issue: Issue) -> Worded:
+    """What a leaf handles, or does where nobody has named it: a behavior's name says nothing."""
+    named = issue.object or issue.item
+    if named is None and any(_is_called_after(issue, each) for each in _OF_BASES):
+        return _doing(issue)
+    return the(named or issue.name)
+
+
+_WITH_PERSON = "the drive with {person} to {place}"
+_OF_BASES = ("go_to", "charge", "deliver_message", "meet_person", "escort")
+"""Behaviors that handle no thing."""
+
+
+def _is_called_after(issue: Issue, behavior: str) -> bool:
+    """Whether a leaf is called as its behavior is, as all are that nobody has named."""
+    return issue.name == behavior or issue.name.startswith(f"{behavior}_")
 
 
 def _where(guess: str) -> str:

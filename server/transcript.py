@@ -8,6 +8,7 @@ from mend.server.journal import events as ev
 from mend.server.steering_words import because, told_level, told_wait, told_word
 from mend.server.transcript_line import Line, Tone
 from mend.server.transcript_words import (
+    as_said,
     by,
     finished_text,
     told_deed,
@@ -180,7 +181,7 @@ class Transcript:
 
     @lines.register
     def _(self, event: ev.NodeLeftOut) -> list[Line]:
-        text = f"{event.name} is left out, as {event.helper} said{because(event.reason)}"
+        text = f"{event.name} is left out, {as_said(event.helper)}{because(event.reason)}"
         return [_line(event, "", text, Tone.SETBACK)]
 
     @lines.register

@@ -5,7 +5,7 @@ from typing import Literal, Protocol
 from uuid import UUID
 
 from mend.dialogue.spoken import called
-from mend.server.access.principal import RESERVED
+from mend.server.access.principal import RESERVED, SCRIPT
 from mend.server.journal import events as ev
 from mend.tasks.intervention import Act, Intervention
 
@@ -116,7 +116,12 @@ def told_missing(part: ev.MissingPart) -> str:
 
 
 def _as_said(by: str | None) -> str:
-    return "" if by is None else f", as {by} said"
+    return "" if by is None else f", {as_said(by)}"
+
+
+def as_said(helper: str) -> str:
+    """Who has said something; the answers that a run was given beforehand are nobody's name."""
+    return f"as {'the script' if helper == SCRIPT else helper} said"
 
 
 def joined(words: Sequence[str]) -> str:

@@ -13,8 +13,9 @@ BEGINS = (*_BY, *_WITHIN)
 """With these words a deadline begins."""
 _HOUR = ("hour", "hours", "h")
 _MINUTE = ("minute", "minutes", "min")
+_PARTS = {"half": "30", "quarter": "15"}
 _NAMED = {"noon": _HALF_DAY_MIN, "midday": _HALF_DAY_MIN, "midnight": 0}
-_LONGEST_WORDS = 6
+_LONGEST_WORDS = 7
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,9 +128,12 @@ def _by_a_day(words: Sequence[str], now_min: int | None) -> By | TwoTimes | None
     if words[-1:] == ["tomorrow"]:
         found = _by(words[:-1], None)
         return None if found is None else replace(found, tomorrow=True)
-    found = _by(words, now_min)
+    is_today = words[-1:] == ["today"]
+    found = _by(words[:-1] if is_today else words, now_min)
     if isinstance(found, By) and now_min is not None:
-        return By(found.minute, tomorrow=found.minute <= now_min)
+        tomorrow = found.minute <= now_min
+        # What is over today cannot be meant.
+        return None if tomorrow and is_today else By(found.minute, tomorrow=tomorrow)
     return found
 
 
@@ -154,11 +158,10 @@ def _by(words: Sequence[str], now_min: int | None) -> By | TwoTimes | None:
 
 
 def _minute(words: Sequence[str], *, alone: bool) -> int | None:
-    """The minute of the day of "3:30", "three thirty", "half past three" or "three o'clock", and,
-    where it may stand `alone`, of "three"."""
-    if words[:2] == ["half", "past"]:
-        hour = _hour(words[2:])
-        return None if hour is None or hour > 12 else hour * 60 + 30
+    """The minute of the day of "3:30", "three thirty", "half past three", "quarter to three" or
+    "three o'clock", and, where it may stand `alone`, of "three"."""
+    if "past" in words or "to" in words:
+        return _beside_an_hour(words)
     if words[1:] == ["o'clock"] or (alone and len(words) == 1 and ":" not in words[0]):
         hour = _hour(words[:1])
         return None if hour is None else hour * 60
@@ -172,6 +175,19 @@ def _minute(words: Sequence[str], *, alone: bool) -> int | None:
         parts = parts if all(each.isalpha() for each in words) else []
     hour = _hour(parts[:1])
     return None if hour is None or int(parts[1]) > 59 else hour * 60 + int(parts[1])
+
+
+def _beside_an_hour(words: Sequence[str]) -> int | None:
+    """The minute of the day of "half past three", "a quarter to three" or "ten past three"."""
+    at = next(at for at, each in enumerate(words) if each in ("past", "to"))
+    hour, before = _hour(words[at + 1 :]), words[at > 0 and words[0] == "a" : at]
+    told = [_PARTS.get(each, each) for each in in_digits(before)]
+    if hour is None or hour > 12 or len(told) != 1 or not re.fullmatch("[0-9]{1,2}", told[0]):
+        return None
+    minutes = int(told[0])
+    if not 0 < minutes < 60 or (words[at] == "to" and (hour == 0 or before == ["half"])):
+        return None
+    return hour * 60 + minutes if words[at] == "past" else ((hour - 1) or 12) * 60 + 60 - minutes
 
 
 def _hour(words: Sequence[str]) -> int | None:

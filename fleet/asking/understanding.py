@@ -40,10 +40,13 @@ _BY_WHEN = (
     "By when do you want it? I do not understand “{said}”: say for instance “by three o'clock” or "
     "“in ten minutes”."
 )
+_FROM_WHERE = "From where? Say for instance “from 305”, or “from 305 to 101”."
 _MOST_WORDS = 20
 """Nobody needs more to say who is told something, and where; each costs looks at the places."""
 _HERE = ("here", "me", "us")
 _ME = ("me", "us", "you")
+_ALONG = ("up", "down", "over", "along", "across", "back")
+"""Said before a way, and no part of what is brought: "the coffee up to 305"."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +108,9 @@ def _ways(words: Sequence[str]) -> Iterator[_Slots]:
     """All ways in which words may be meant. Raises `_MissingError`."""
     first, second = [*(_plain(each) for each in words[:2]), "", ""][:2]
     rest = words[1:]
+    if first in ("come", "go", "drive") and second in _ALONG:
+        words, second = [words[0], *words[2:]], _plain(words[2]) if len(words) > 2 else ""
+        rest = words[1:]
     if first in ("bring", "take", "get") and second in ("me", "us") and _is_way(rest[1:]):
         yield from _escorting(rest)
     elif first in ("bring", "take", "carry", "deliver", "fetch", "get"):
@@ -126,6 +132,7 @@ def _ways(words: Sequence[str]) -> Iterator[_Slots]:
 def _is_way(words: Sequence[str]) -> bool:
     """Whether nothing but a way is said: it is not a thing that is to be brought then."""
     plain = _plain_words(words)
+    plain = plain[1:] if plain[:1] and plain[0] in _ALONG else plain
     return plain[:1] == ["to"] or (plain[:1] == ["from"] and "to" in plain)
 
 
@@ -139,6 +146,8 @@ def _bringing(verb: str, words: Sequence[str]) -> Iterator[_Slots]:
         )
     told = {"what": free_text(what)}
     comes_here = to_me or verb in ("fetch", "get", "bring")
+    if not way and (to_me or verb in ("fetch", "get")):
+        raise _MissingError(_FROM_WHERE)
     for origin, destination in _ends(way, comes_here=comes_here):
         places = {"origin": origin, "destination": destination}
         yield _Slots(RequestKind.TRANSPORT, places, told)
@@ -178,24 +187,22 @@ def _messages(verb: str, words: Sequence[str]) -> Iterator[tuple[Sequence[str], 
     """To whom, and what, wherever a message may begin. Raises `_MissingError`."""
     quotation = next((at for at, each in enumerate(words) if is_quoted(each)), None)
     begins = [at for at, each in enumerate(words) if at > 0 and _plain(each) == "that"]
-    if not begins and quotation is None and verb == "tell":
+    knows = [at for at, each in enumerate(words[:-1]) if at > 0 and _plain(each) == "know"]
+    if verb == "let":
+        for at in knows:
+            that = _plain(words[at + 1]) == "that"
+            yield words[:at], words[at + 2 if that else at + 1 :]
+    elif not begins and quotation is None:
         # "Tell 305 lunch is ready": that the place ends somewhere is all that is known.
         told = [at for at in range(1, len(words)) if _plain(words[at]) not in ("to", "about")]
         yield from ((words[:at], words[at:]) for at in told)
     elif begins:
         for at in begins:
-            yield _whom(verb, words[:at]), words[at + 1 :]
+            yield words[:at], words[at + 1 :]
     elif quotation is not None:
-        yield _whom(verb, words[:quotation]), words[quotation:]
-    if len(words) < 2 or not (begins or quotation or verb == "tell"):
+        yield words[:quotation], words[quotation:]
+    if len(words) < 2 or not (begins or quotation or knows or verb == "tell"):
         raise _MissingError("What am I to tell? Say for instance “tell 305 that lunch is ready”.")
-
-
-def _whom(verb: str, words: Sequence[str]) -> Sequence[str]:
-    """Whom somebody lets "know", or nobody where the sentence has no such word."""
-    if verb == "tell":
-        return words
-    return words[:-1] if _plain_words(words[-1:]) == ["know"] else []
 
 
 def _is_telling(words: Sequence[str]) -> bool:
@@ -206,7 +213,10 @@ def _is_telling(words: Sequence[str]) -> bool:
 def _until_way(words: Sequence[str]) -> tuple[Sequence[str], Sequence[str]]:
     """What is said before the way, and the way."""
     at = next((at for at, each in enumerate(words) if _plain(each) in ("from", "to")), len(words))
-    return words[:at], words[at:]
+    before = at
+    while at < len(words) and before > 0 and _plain(words[before - 1]) in _ALONG:
+        before -= 1
+    return words[:before], words[at:]
 
 
 def _ends(way: Sequence[str], *, comes_here: bool) -> Iterator[tuple[Sequence[str], Sequence[str]]]:
@@ -219,6 +229,8 @@ def _ends(way: Sequence[str], *, comes_here: bool) -> Iterator[tuple[Sequence[st
         yield ends if first == "from" else (ends[1], ends[0])
     if splits:
         return
+    if first == "to" and " ".join(_plain_words(way[1:])) in _HERE:
+        raise _MissingError(_FROM_WHERE)
     if first == "to":
         yield ["here"], way[1:]
     elif first == "from" and comes_here:
@@ -353,6 +365,7 @@ _AMONG_WORDS = frozenset(("from", "to", "in", "at", "that", "here", "me", "us", 
 
 def _told(text: str) -> str:
     """A text as it is said, quoted where it would be taken for something else."""
-    words = text.split()
-    is_plain = text == free_text(words_of(text)) and not _AMONG_WORDS & set(_plain_words(words))
+    plain = _plain_words(text.split())
+    is_plain = text == free_text(words_of(text)) and not _AMONG_WORDS & set(plain)
+    is_plain = is_plain and not set(plain[-1:]) & set(_ALONG)
     return text if is_plain else quoted(text)

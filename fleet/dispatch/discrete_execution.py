@@ -141,7 +141,8 @@ class DiscreteExecution:
         for leg in self.dispatcher.legs_to_withdraw(self.now_s):
             record = self._open.pop(leg.robot, None)
             at = self._last_passed(leg.robot)
-            end = LegEnd(outcome=LegOutcome.WITHDRAWN, reason="not wanted", at=at)
+            why = self.dispatcher.why_unwanted(leg)
+            end = LegEnd(outcome=LegOutcome.WITHDRAWN, reason=why, at=at)
             self._end(record, leg, end)
         for robot in list(self._waiting):
             if robot in self._open:

@@ -122,6 +122,10 @@ class Dispatcher:
         self._advance(now_s)
         return self._legs.to_withdraw()
 
+    def why_unwanted(self, leg: Leg) -> str:
+        """Why one of `legs_to_withdraw` is not wanted any more."""
+        return self._legs.why_unwanted(leg)
+
     def legs_under_way(self) -> list[Leg]:
         """The legs that were begun and have not ended."""
         return list(self._state.under_way.values())

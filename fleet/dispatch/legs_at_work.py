@@ -14,6 +14,8 @@ from mend.fleet.scheduling.replanning.live_plan import NextStop
 from mend.fleet.scheduling.schedule import Action
 from mend.fleet.scheduling.tolerance import CHECK_S
 
+_CHANGED = "the plan has changed"
+
 
 class LegsAtWork:
     """Hands out legs and hears of them."""
@@ -33,6 +35,18 @@ class LegsAtWork:
             for robot, leg in self._state.under_way.items()
             if not self._state.fleet.robots[robot].held
         ]
+
+    def why_unwanted(self, leg: Leg) -> str:
+        """Why a leg that is to be withdrawn is not wanted any more."""
+        item = self._state.fleet.items[leg.booking]
+        if item.withdrawn or item.returns or not item.open:
+            return "the request is not wanted any more"
+        doers = [
+            robot
+            for robot, stops in self._state.fleet.stops().items()
+            if robot != leg.robot and any(stop.item == leg.booking for stop in stops)
+        ]
+        return f"the plan has changed: {doers[0]} is to do it now" if doers else _CHANGED
 
     def may_begin(self, leg: Leg) -> bool:
         """Whether a robot that is at the place of its leg may do there what it is to do."""

@@ -8,6 +8,7 @@ from uuid import UUID
 
 from pydantic import BaseModel, ConfigDict
 
+from mend.server.access.principal import SCRIPT
 from mend.server.access.roles import Role, with_article
 from mend.server.journal import events as ev
 from mend.server.journal.chain import Seal
@@ -119,7 +120,7 @@ def deed_of(event: ev.Event | UnreadableEvent) -> Deed | None:
     author: ev.Author | None = getattr(event, "author", None)
     if author is None:
         helper = getattr(event, "helper", None)
-        return None if helper == "script" else _deed(event, helper, None, None, what)
+        return None if helper == SCRIPT else _deed(event, helper, None, None, what)
     return _deed(event, author.principal, author.role, author.address, what)
 
 

@@ -28,6 +28,8 @@ TOKEN_NAME = "token"
 """The name of whoever shows the service's one token (`MEND_TOKEN`)."""
 
 RESERVED = (ANYBODY.name, TOKEN_NAME)
+SCRIPT = "script"
+"""The helper whose answers a run was given beforehand."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from uuid import UUID
 from mend.errors import RefusalError
 from mend.fleet.dispatch.booking import RequestView
 from mend.fleet.dispatch.dispatcher import Dispatcher
-from mend.fleet.dispatch.leg import Finding, Found, Leg
+from mend.fleet.dispatch.leg import Finding, Found
 from mend.fleet.right_of_way.right_of_way import Yielding
 from mend.robots.link.messages import Poses
 from mend.server.background import Endless
@@ -54,10 +54,11 @@ OTHERS_S = 3.0
 
 @dataclass(frozen=True, slots=True)
 class _Decided:
-    """What comes of what was thought about: legs that are not wanted any more, robots that have
-    charged enough, or whose turn it is at their place; when plans are to be looked at again."""
+    """What comes of what was thought about: whose legs are not wanted any more, by robot with why;
+    robots that have charged enough, or whose turn it is at their place; when plans are to be
+    looked at again."""
 
-    unwanted: list[Leg]
+    unwanted: Mapping[str, str]
     charged: list[Errand]
     ready: frozenset[str]
     wakes_s: float | None
@@ -187,11 +188,13 @@ class FleetAtWork:
             for leg in self.dispatcher.legs_under_way():
                 self._legs.carry_out(leg)
             executions = self._legs.executions
-            unwanted = [executions[e.robot] for e in decided.unwanted if e.robot in executions]
+            unwanted = [
+                (e, decided.unwanted[n]) for n, e in executions.items() if n in decided.unwanted
+            ]
         for errand in decided.charged:
             await self._errands.break_off(errand)
-        for execution in unwanted:
-            await execution.break_off()
+        for execution, why in unwanted:
+            await execution.break_off(why)
 
     def _decide(self, now_s: float) -> _Decided:
         """All that is to be thought about, which takes a while where much is planned."""
@@ -225,8 +228,9 @@ class FleetAtWork:
             if self._is_free(robot):
                 self._errands.send(robot, to, None)
 
-    def _begin_legs(self, now_s: float) -> list[Leg]:
-        """Have robots that rest set out for what is due; the legs that are not wanted any more."""
+    def _begin_legs(self, now_s: float) -> dict[str, str]:
+        """Have robots that rest set out for what is due; whose legs are not wanted any more, and
+        why."""
         for robot, known in self.dispatcher.fleet.robots.items():
             if (
                 not known.works
@@ -238,7 +242,8 @@ class FleetAtWork:
             self.dispatcher.robot_moved(robot, at, now_s)
         for elevator, found in self._held_cabins.found(now_s):
             self._note_held(elevator, found, now_s)
-        unwanted = self.dispatcher.legs_to_withdraw(now_s)
+        legs = self.dispatcher.legs_to_withdraw(now_s)
+        unwanted = {each.robot: self.dispatcher.why_unwanted(each) for each in legs}
         while due := [e for e in self.dispatcher.legs_to_begin(now_s) if self._is_free(e.robot)]:
             self._legs.note_begun(due[0], now_s)
         return unwanted

@@ -65,7 +65,7 @@ class LegExecution:
         self._site, self._leg, self._places = site, leg, places
         self._options, self._runs, self._turn = options, runs, turn
         self._run: UUID | None = None
-        self._broken_off = False
+        self._broken_off: str | None = None
         self._waiting: asyncio.Future[None] | None = None
         self._stands = asyncio.Event()
         self._ready: Callable[[], bool] = lambda: True
@@ -92,9 +92,9 @@ class LegExecution:
         if waiting is not None and not waiting.done() and (self._broken_off or ready):
             waiting.set_result(None)
 
-    async def break_off(self) -> None:
+    async def break_off(self, why: str) -> None:
         """It is not wanted any more; `run` says that it was withdrawn, unless it was done."""
-        self._broken_off = True
+        self._broken_off = self._broken_off or why[:_LONGEST]
         self.look_again(ready=False)
         if self._run is not None:
             try:
@@ -127,7 +127,7 @@ class LegExecution:
                 return end
             await self._wait()
             if self._broken_off:
-                return LegEnd(outcome=LegOutcome.WITHDRAWN, at=self._at())
+                return self._broken()
         return end if visits else await self._done(LegStage.DO, task_of(leg, place, self._away_m()))
 
     def _away_m(self) -> float | None:
@@ -154,7 +154,7 @@ class LegExecution:
         request = run_request(self._site.id, leg, self._options)
         while not await self._is_begun(run, request, tree):
             if self._broken_off:
-                return LegEnd(outcome=LegOutcome.WITHDRAWN, at=self._at())
+                return self._broken()
             await asyncio.sleep(TRIES_AGAIN_S)
         self._run = run
         view = await self._runs.wait_for_end(run)
@@ -172,7 +172,7 @@ class LegExecution:
                 while not self._is_still:
                     self._stands.clear()
                     await self._stands.wait()
-        return LegEnd(outcome=LegOutcome.WITHDRAWN, at=self._at())
+        return self._broken()
 
     @property
     def _is_still(self) -> bool:
@@ -195,9 +195,12 @@ class LegExecution:
         if run.status is RunStatus.FINISHED and not left_out:
             return LegEnd(outcome=LegOutcome.DONE, reason=self._felt())
         if self._broken_off:
-            return LegEnd(outcome=LegOutcome.WITHDRAWN, at=self._at())
+            return self._broken()
         said = run.result.reason if run.result is not None else str(run.status)
         return self._failed(said[:_LONGEST])
+
+    def _broken(self) -> LegEnd:
+        return LegEnd(outcome=LegOutcome.WITHDRAWN, reason=self._broken_off, at=self._at())
 
     def _failed(self, reason: str) -> LegEnd:
         return LegEnd(outcome=LegOutcome.FAILED, reason=reason, at=self._at())

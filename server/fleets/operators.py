@@ -79,7 +79,7 @@ class Operators:
                 await self._book.in_thread(dispatcher.robot_failed, robot, at, reason, now_s)
         execution = self._legs.executions.get(robot)
         if leg is not None and execution is not None:
-            await execution.break_off()
+            await execution.break_off(f"{robot} was taken out of service: {reason}")
         if errand is not None:
             await self._errands.break_off(errand)
 

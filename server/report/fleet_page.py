@@ -85,10 +85,16 @@ def _figures(history: FleetHistory) -> list[tuple[str, str]]:
     done = sum(outcome_of(each) == "done" for each in asked)
     figures = [(f"{done} of {len(asked)}", "requests done"), (str(len(legs)), "legs ended")]
     driven_m, helped = metres_of(legs), interventions_in(legs)
+    known = sum(metres_of([each]) is not None for each in legs)
+    # Of the other legs nobody knows how far it was, so their interventions do not count either.
+    of_known = (
+        "" if known == len(legs) else f", in the {known} of {len(legs)} legs with known metres"
+    )
     if driven_m is not None:
-        figures += [(f"{driven_m:.0f} m", "driven"), (str(len(helped)), "interventions")]
+        figures.append((f"{driven_m:.0f} m", f"driven{of_known}"))
+        figures.append((str(len(helped)), f"interventions{of_known}"))
     if (between_m := metres_between(legs, helped)) is not None:
-        figures.append((f"{between_m:.0f} m", "between interventions"))
+        figures.append((f"{between_m:.0f} m", f"between interventions{of_known}"))
     if saved := saved_s(history):
         figures.append((f"{sum(saved) / 60:.1f} min", "saved by transfers, as planned"))
     return figures

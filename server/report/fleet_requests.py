@@ -5,7 +5,7 @@ from statistics import median
 
 from mend.fleet.requests import STATUS, RequestStatus
 from mend.server.report.fleet_history import FleetHistory, RequestRecord
-from mend.server.report.leg_times import metres_of
+from mend.server.report.leg_times import whole_metres_of
 from mend.server.report.table import Cell, Table
 
 OUTCOMES = ("done", "not done", "open")
@@ -93,7 +93,7 @@ def each_request(history: FleetHistory) -> Table:
                 legs[0].begun.at_s if legs else None,
                 request.over_s,
                 ", ".join(dict.fromkeys(each.begun.robot for each in legs)),
-                metres_of(legs),
+                whole_metres_of(legs),
                 request.now.reason or "",
             )
         )
@@ -110,7 +110,10 @@ def each_request(history: FleetHistory) -> Table:
         "driven, m",
         "why",
     )
-    note = "Seconds of the site's clock. Metres are of the legs that ended in this time."
+    note = (
+        "Seconds of the site's clock. Metres are of the legs that ended in this time; there are "
+        "none where it is not known of each of them how far its robot drove."
+    )
     return Table("each_request", "Each request", note, heads, rows, folded=True)
 
 

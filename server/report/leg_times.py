@@ -116,6 +116,12 @@ def metres_of(legs: Iterable[LegRecord]) -> float | None:
     return sum(metres) if metres else None
 
 
+def whole_metres_of(legs: Iterable[LegRecord]) -> float | None:
+    """How far robots drove in those legs that have ended; None unless that is known of each."""
+    ended = [each for each in legs if each.ended is not None]
+    return metres_of(ended) if all(metres_of([each]) is not None for each in ended) else None
+
+
 def _between_runs(runs: Sequence[tuple[LegStage, Sequence[ev.Event]]]) -> TimeUse:
     """What a robot does while no run has it: it is there and waits, or nothing is known."""
     if not runs:

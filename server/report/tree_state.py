@@ -5,6 +5,7 @@ from collections import Counter
 from mend.server.journal import events as ev
 from mend.server.report.record import RunRecord
 from mend.server.report.tree_drawing import NodeFate, NodeState
+from mend.server.transcript_words import as_said
 from mend.tasks.definition import NodeKind, TaskTreeDefinition
 from mend.tasks.task_tree import TaskTree
 
@@ -76,7 +77,7 @@ def _detail(tree: TaskTree, leaf: int, record: RunRecord, starts: int) -> str:
     if (done := record.done.get(path)) is not None:
         parts.append(DOERS[done.by])
     if (left_out := record.left_out.get(path)) is not None:
-        parts.append(f"left out, as {left_out.helper} said")
+        parts.append(f"left out, {as_said(left_out.helper)}")
     if undone := sum(each.node == path for each in record.undone):
         parts.append("undone once" if undone == 1 else f"undone {undone} times")
     if starts > 1:

@@ -9,6 +9,7 @@ from mend.dialogue.spoken import spoken
 from mend.dialogue.worded import joined, worded
 from mend.dialogue.wording import sentence
 from mend.errors import ConflictError, NotFoundError
+from mend.server.access.principal import SCRIPT
 from mend.server.dialogues.answers import AnswerSource
 from mend.server.dialogues.duty import Duty
 from mend.server.dialogues.escalation import (
@@ -106,7 +107,7 @@ class DialogueDriver:
         clock = self._context.clock
         scripted = self._scripted(dialogue)
         if scripted is not None and has_come(clock, scripted[1]):
-            await self._take(self._answered(dialogue, ask, [scripted[0]], "script", proxy))
+            await self._take(self._answered(dialogue, ask, [scripted[0]], SCRIPT, proxy))
             return True
         assert ask.deadline is not None, "every question has a deadline"
         if has_come(clock, ask.deadline):
@@ -257,7 +258,7 @@ class DialogueDriver:
         ask, scripted = dialogue.open_ask, self._scripted(dialogue)
         if ask is None or scripted is None or not has_come(self._context.clock, scripted[1]):
             return [self.abort(dialogue)]
-        events = self._answered(dialogue, ask, [scripted[0]], "script", proxy)
+        events = self._answered(dialogue, ask, [scripted[0]], SCRIPT, proxy)
         closed = any(isinstance(each, ev.DialogueClosed) for each in events)
         return events if closed else [*events, self.abort(dialogue)]
 

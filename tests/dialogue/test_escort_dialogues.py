@@ -117,3 +117,20 @@ def test_who_comes_near_tells_of_a_person_and_who_was_there_already_does_not() -
     assert Change.CAME.by_a_person
     assert put_right(watched, before, now) == PutRight(Expectation.ACCOMPANIED, Change.CAME)
     assert put_right(watched, now, now) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("meet_person", "the meeting with Ada at F1 101"),
+        ("escort_Ada", "the drive with Ada to F1 101"),
+        ("go_to_F1-101", "the drive to F1 101"),
+        ("rounds", "the rounds"),
+    ],
+)
+def test_what_would_be_left_out_is_said_as_people_say_it(name: str, told: str) -> None:
+    person = None if name.startswith(("go_to", "rounds")) else "Ada"
+    issue = Issue("blocked", "robot1", "/0", name, None, "F1-101", 2, person=person)
+    talk = Conversation(SCRIPTS["blocked"], issue, Outlook(attempt=2))
+    talk.open()
+    assert asked(talk.answer("no")).text == f"Shall I leave {told} out?"

@@ -88,6 +88,7 @@ def test_after_the_last_guess_it_asks_whether_to_leave_it_out() -> None:
         ({"item": "cup_of_tea"}, "the cup of tea"),
         ({"message": "Lunch is ready"}, "the message for F1 102"),
         ({"person": "Ada"}, "the drive with Ada to F1 102"),
+        ({"name": "meet_person", "person": "Ada"}, "the meeting with Ada at F1 102"),
     ],
 )
 def test_it_says_what_it_would_leave_out(more: dict[str, str], told: str) -> None:

@@ -1,6 +1,7 @@
 """Names and counts as people say them."""
 
 import pytest
+from languages_of_console import untold
 
 from mend.dialogue.spoken import called, count_of, spoken
 from mend.dialogue.worded import sentences_of
@@ -23,6 +24,14 @@ def test_what_people_have_only_pointed_at_is_spoken_of_in_words_of_each_language
     nameless = spoken("thing_to_be_brought--0afba7d8")
     assert nameless == "thing to be brought"
     assert [each.key for each in sentences_of(nameless)] == ["thing to be brought"]
+
+
+def test_where_a_nameless_thing_is_fetched_is_said_within_a_sentence_too() -> None:
+    name = "thing_to_be_brought-AHGM_n8--8cdc1683"
+    assert spoken(name) == "thing to be brought from AHGM n8"
+    told = called(f"I have come to AHGM-n8 to collect the {name}")
+    assert told == "I have come to AHGM n8 to collect the thing to be brought from AHGM n8"
+    assert untold([told]) == []
 
 
 def test_identifiers_are_said_as_words() -> None:

@@ -6,6 +6,7 @@ from typing import Any, get_args
 from uuid import UUID
 
 import pytest
+from languages_of_console import untold
 
 from mend.dialogue.evidence import Change
 from mend.dialogue.script import CloseReason, Help
@@ -354,3 +355,7 @@ def test_a_leaf_without_an_object_is_told_as_left_out_and_its_item_once() -> Non
     handed_over = collected.model_copy(update={"node": "/1", "name": "hand_over"})
     assert told_missing(collected) == "collect was left out, as anna said"
     assert finished_text([collected, handed_over]) == "the task is done without mail, as anna said"
+    scripted = collected.model_copy(update={"left_out_by": "script"})
+    told = [finished_text([each]) for each in (collected, scripted)]
+    assert told[1] == "the task is done without mail, as the script said"
+    assert untold([*told, told_missing(scripted)]) == []

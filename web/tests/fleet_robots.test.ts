@@ -4,9 +4,9 @@ import { likelyEllipse } from "../src/building/likely_ellipse";
 import { planOf } from "../src/building/plan";
 import { type FleetEvent, legsAfter } from "../src/fleet/fleet_past";
 import { fleetAtWork, fleetAtWorkThen, standingsOf } from "../src/fleet/fleet_robots";
-import { closedInWords, isAtInWords, sureInWords } from "../src/fleet/fleet_words";
+import { closedInWords, hasInWords, isAtInWords, sureInWords } from "../src/fleet/fleet_words";
 import { closedWay, sameWay } from "../src/fleet/picked";
-import type { FleetRobot, FleetView } from "../src/wire/types";
+import type { FleetRobot, FleetView, RequestView } from "../src/wire/types";
 import { OFFICE } from "./office_scene";
 
 const plan = planOf(OFFICE)!;
@@ -81,5 +81,19 @@ describe("closed ways", () => {
     expect(closedWay(closed, ["F1/hall", "F1/101"])).toBe(closed[0]);
     expect(closedWay(closed, ["F1/hall", "F1/lift"])).toBeUndefined();
     expect(closedInWords(closed[0]!)).toBe("Door closed between F1 101 and F1 hall until 15:00, says ROBOT1");
+  });
+});
+
+describe("what robots have", () => {
+  const asked = (name: string, what: object) => ({ name, what }) as RequestView;
+
+  it("is aboard where it is a thing, and people are shown the way", () => {
+    const requests = [
+      asked("guest", { kind: "escort", person: "Ms Lee" }),
+      asked("mail--124d4c0c", { kind: "transport", what: "the mail" }),
+    ];
+    expect(hasInWords(robot({ aboard: ["guest"] }), requests)).toBe("It shows Ms Lee the way.");
+    expect(hasInWords(robot({ aboard: ["mail--124d4c0c"] }), requests)).toBe("It has the mail aboard.");
+    expect(hasInWords(robot({ aboard: ["tea"] }), requests)).toBe("It has tea aboard.");
   });
 });

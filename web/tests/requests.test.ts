@@ -1,5 +1,6 @@
 // What is said of requests, and what a filled-in form asks for.
 import { describe, expect, it } from "vitest";
+import { exampleFor } from "../src/requests/example";
 import { expectation, isOver, wanted, within } from "../src/requests/request_words";
 import { soon } from "../src/requests/followed";
 import { missing, NO_WISH, requestOf, type Wish } from "../src/requests/wish";
@@ -82,5 +83,14 @@ describe("a filled-in form", () => {
     });
     expect(requestOf({ ...MAIL, what: "3 Schlüssel" }, 0, "x")["name"]).toBe("Schl_ssel--x");
     expect(requestOf({ ...MAIL, what: "钥匙" }, 0, "x")["name"]).toBe("thing--x");
+  });
+});
+
+describe("an example of what to say", () => {
+  const places = ["F1/101", "F1/102", "F2/203"];
+
+  it("says \"this\" only where it is known where that is", () => {
+    expect(exampleFor(places, "F1/101")).toBe("bring this to F1 102");
+    expect(exampleFor(places, null)).toBe("bring the mail from F1 101 to F2 203");
   });
 });

@@ -85,6 +85,7 @@ describe("what the service says", () => {
     learn([{ text, sentences: [{ key: "Please {put_in}.", args: { put_in } }] }]);
     expect(said(text)).toBe("Bitte „was gebracht werden soll“ in meinen Korb legen.");
     expect(said("I have come to 101 to collect the thing to be brought")).toContain("um „was gebracht werden soll“ abzuholen");
+    expect(said("I have come to 101 to collect the thing to be brought from F1 101")).toContain("was von F1 101 gebracht werden soll");
   });
 
   it("stays English where one of its sentences is of a script that nobody has translated", () => {

@@ -403,6 +403,7 @@ def test_robot_goes_on_with_what_it_is_to_do_after_all() -> None:
         dispatcher.began(leg, 0.0)
     collect, take = sorted(dispatcher.legs_under_way(), key=lambda leg: leg.robot)
     assert take in dispatcher.legs_to_withdraw(5.0)
+    assert dispatcher.why_unwanted(take).startswith("the plan has changed")
     dispatcher.ended(collect, DONE, 5.0)
     assert dispatcher.legs_to_withdraw(5.0) == []
     assert only_leg(dispatcher, 5.0).action is LegAction.GIVE
@@ -418,6 +419,7 @@ def test_nobody_goes_for_what_another_robot_still_has_to_let_be() -> None:
     assert leg.robot == "r0"
     assert dispatcher.legs_to_begin(46.0) == []
     assert dispatcher.legs_to_withdraw(46.0) == [leg]
+    assert dispatcher.why_unwanted(leg) == "the plan has changed: r1 is to do it now"
     dispatcher.ended(leg, LegEnd(outcome=LegOutcome.WITHDRAWN), 46.0)
     assert only_leg(dispatcher, 46.0).robot == "r1"
 
@@ -493,6 +495,7 @@ def test_cancelled_request_is_broken_off_or_goes_back() -> None:
     leg = only_leg(dispatcher, 0.0)
     dispatcher.cancel("tea", 5.0)
     assert dispatcher.legs_to_withdraw(5.0) == [leg]
+    assert dispatcher.why_unwanted(leg) == "the request is not wanted any more"
     dispatcher.ended(leg, LegEnd(outcome=LegOutcome.WITHDRAWN, at="b"), 6.0)
     assert status(dispatcher) is RequestStatus.CANCELLED
     dispatcher.submit(asked("more"), 10.0)

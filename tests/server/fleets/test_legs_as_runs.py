@@ -372,6 +372,19 @@ async def test_a_leg_that_is_broken_off_counts_what_its_robot_says_once_it_stand
         work.site.changed()
         ended = await _first_ended(work)
         assert (ended.outcome, ended.driven_m, ended.barred_s) == ("withdrawn", 8.0, 1.0)
+        assert ended.reason == "r0 was taken out of service: it is stuck"
+
+
+async def test_the_leg_of_a_request_that_was_cancelled_says_so() -> None:
+    async with working("a") as work:
+        await work.fleet.requesters.submit(asked(), None)
+        await work.runs.nth(1)
+        await work.fleet.requesters.cancel("tea", None)
+        ended = await _first_ended(work)
+        assert (ended.outcome, ended.reason) == (
+            "withdrawn",
+            "the request is not wanted any more",
+        )
 
 
 async def test_what_a_robot_drove_is_not_known_that_never_says_that_it_stands(

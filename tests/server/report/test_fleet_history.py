@@ -102,7 +102,7 @@ def test_journals_of_an_older_mend_say_nothing_of_what_a_transfer_saves() -> Non
 def test_a_request_is_told_with_its_floors_robots_and_metres() -> None:
     mail, tea = rows(day(), "each_request")
     assert mail == (
-        "mail", "transport", "F1, F2", "done", 0.0, 0.0, 10.0, 130.0, "r0, r1", 100.0, "",
+        "mail", "transport", "F1, F2", "done", 0.0, 0.0, 10.0, 130.0, "r0, r1", None, "",
     )  # fmt: skip
     assert tea[:8] == ("tea", "go to room", "", "booked", 80.0, 100.0, None, None)
 

@@ -4,7 +4,7 @@ import csv
 import re
 from pathlib import Path
 
-from fleet_events import FLEET, SITE, LegMaker
+from fleet_events import FLEET, SITE, LegMaker, asked
 from test_fleet_history import day
 
 from mend.fleet.requests import LegAction
@@ -49,9 +49,9 @@ def test_it_tells_first_what_there_is_to_know_first(tmp_path: Path) -> None:
     assert figures == [
         ("1 of 2", "requests done"),
         ("4", "legs ended"),
-        ("100 m", "driven"),
-        ("2", "interventions"),
-        ("50 m", "between interventions"),
+        ("100 m", "driven, in the 3 of 4 legs with known metres"),
+        ("2", "interventions, in the 3 of 4 legs with known metres"),
+        ("50 m", "between interventions, in the 3 of 4 legs with known metres"),
         ("1.5 min", "saved by transfers, as planned"),
     ]
 
@@ -80,3 +80,32 @@ def test_every_table_and_the_timeline_are_written_as_csv(tmp_path: Path) -> None
     with (tmp_path / "legs.csv").open(encoding="utf-8", newline="") as file:
         legs = list(csv.DictReader(file))
     assert [each["driven, m"] for each in legs] == ["30", "50", "", "20"]
+
+
+def test_figures_of_some_legs_are_not_told_as_those_of_all(tmp_path: Path) -> None:
+    collect, bring = (
+        LegMaker("r0", number, "mail", action)
+        for number, action in enumerate((LegAction.COLLECT, LegAction.HAND_OVER), 1)
+    )
+    helped = bring.run()
+    events = [
+        asked("mail", "booked", 0.0),
+        collect.begun(0.0),
+        collect.ended(10.0, driven_m=14.0),
+        bring.begun(10.0),
+        helped.started(),
+        *helped.dialogue(2.0, 4.0, "lost", 1),
+        bring.ended(30.0),
+        asked("mail", "done", 30.0),
+    ]
+    text = page(tmp_path, events)
+    figures = re.findall(r"<li><strong>([^<]*)</strong><span>([^<]*)<", text)
+    assert figures[2:] == [
+        ("14 m", "driven, in the 1 of 2 legs with known metres"),
+        ("0", "interventions, in the 1 of 2 legs with known metres"),
+    ]
+    history = FleetHistory.of(SITE, events, Span())
+    (requests,) = [each for each in tables_of(history) if each.name == "each_request"]
+    assert [
+        dict(zip(requests.columns, row, strict=True))["driven, m"] for row in requests.rows
+    ] == [None]

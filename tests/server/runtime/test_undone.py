@@ -226,7 +226,7 @@ async def test_what_a_helper_leaves_out_is_told_as_missing_with_who_said_so() ->
     view, events = await run_with(tree, {"part_2": ["part_1"]}, answers=answers, max_attempts=1)
     assert view.status is RunStatus.FINISHED
     assert view.result is not None
-    assert view.result.reason == "the task is done without part_1, as script said"
+    assert view.result.reason == "the task is done without part_1, as the script said"
     [missing] = view.result.missing
     assert (missing.object, missing.place, missing.left_out_by) == ("part_1", "spot_1", "script")
     assert story(events)[-2:] == in_turn(2)

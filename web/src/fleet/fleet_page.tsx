@@ -143,7 +143,7 @@ function Shown({ site, fleet, events, requests, plan, moment, again }: ShownProp
         />
         {newest && (
           <div class="fleet-side">
-            <RobotsList {...{ fleet, seen, events }} onShow={show} changed={again} />
+            <RobotsList {...{ fleet, requests, seen, events }} onShow={show} changed={again} />
             <WaysPanel {...{ fleet, plan, picked }} floor={floor.name} onPick={setPicked} changed={again} />
           </div>
         )}

@@ -2,7 +2,8 @@
 import { likelyEllipse } from "../building/likely_ellipse";
 import { robotName } from "../question/fault_words";
 import { clock } from "../run/run_words";
-import type { ClosedWayView, FleetRobot } from "../wire/types";
+import { isPointedAt } from "../requests/wish";
+import type { ClosedWayView, FleetRobot, RequestView } from "../wire/types";
 import { decimal, t } from "../words/words";
 
 /** What a leg, or a stop of the plan, does with a request at its place. */
@@ -46,6 +47,21 @@ export function isAtInWords({ at_work, works, out_of_service, connected }: Fleet
   if (out_of_service !== null) return t("is out of service: {why}", { why: out_of_service });
   if (!connected) return t("is not connected");
   return works ? t("has nothing to do") : t("does not work");
+}
+
+/** What a robot has aboard, and whom it leads, as people call them: "It has the mail aboard. It shows Ms Lee the way." */
+export function hasInWords({ aboard }: FleetRobot, requests: readonly RequestView[]): string {
+  const things: string[] = [];
+  const people: string[] = [];
+  for (const name of aboard) {
+    const what = requests.find((each) => each.name === name)?.what ?? {};
+    if (what.kind === "escort") people.push(String(what.person));
+    else things.push(what.kind === "transport" && !isPointedAt(String(what.what)) ? String(what.what) : name);
+  }
+  return [
+    ...(things.length > 0 ? [t("It has {aboard} aboard.", { aboard: things.join(", ") })] : []),
+    ...(people.length > 0 ? [t("It shows {people} the way.", { people: people.join(", ") })] : []),
+  ].join(" ");
 }
 
 /** "The way between F1 101 and F1 hall is blocked until 5:00 (anna)." */

@@ -7,15 +7,16 @@ import { robotName } from "../question/fault_words";
 import { sentence } from "../run/run_words";
 import { may } from "../state/access";
 import * as rest from "../wire/rest";
-import type { ErrandEnded, FleetRobot, FleetView } from "../wire/types";
+import type { ErrandEnded, FleetRobot, FleetView, RequestView } from "../wire/types";
 import type { FleetEvent } from "./fleet_past";
-import { isAtInWords, placeInWords, sureInWords, wholeClock } from "./fleet_words";
+import { hasInWords, isAtInWords, placeInWords, sureInWords, wholeClock } from "./fleet_words";
 import { useRefusal } from "./use_refusal";
 import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
 
 interface RobotsListProps {
   fleet: FleetView;
+  requests: readonly RequestView[];
   seen: readonly SeenRobot[];
   events: readonly FleetEvent[];
   onShow(robot: string): void;
@@ -26,7 +27,7 @@ interface RobotsListProps {
 /** Of more robots what may be done is folded, so that they stand together with the plan. */
 const FEW = 6;
 
-export function RobotsList({ fleet, seen, events, onShow, changed }: RobotsListProps) {
+export function RobotsList({ fleet, requests, seen, events, onShow, changed }: RobotsListProps) {
   return (
     <section class="panel" aria-labelledby="fleet-robots-title">
       <h2 id="fleet-robots-title">{t("Robots")}</h2>
@@ -34,7 +35,7 @@ export function RobotsList({ fleet, seen, events, onShow, changed }: RobotsListP
         {fleet.robots.map((robot) => {
           const found = seen.find((each) => each.robot === robot.robot);
           return found === undefined ? null : (
-            <Row key={robot.robot} {...{ fleet, robot, seen: found, onShow, changed }} came={lastErrand(events, robot.robot)} />
+            <Row key={robot.robot} {...{ fleet, requests, robot, seen: found, onShow, changed }} came={lastErrand(events, robot.robot)} />
           );
         })}
       </ul>
@@ -52,6 +53,7 @@ const BEGINS_OR_ENDS: ReadonlySet<string> = new Set(["leg_begun", "leg_ended", "
 
 interface RowProps {
   fleet: FleetView;
+  requests: readonly RequestView[];
   robot: FleetRobot;
   seen: SeenRobot;
   came: ErrandEnded | null;
@@ -59,7 +61,7 @@ interface RowProps {
   changed(): void;
 }
 
-function Row({ fleet, robot, seen, came, onShow, changed }: RowProps) {
+function Row({ fleet, requests, robot, seen, came, onShow, changed }: RowProps) {
   const where = seen.where === null ? t("Nobody knows where it is") : sentence(seen.unseen === null ? seen.where : `${seen.unseen}, ${seen.where}`).slice(0, -1);
   return (
     <li class="plan-row fleet-robot">
@@ -76,7 +78,7 @@ function Row({ fleet, robot, seen, came, onShow, changed }: RowProps) {
       </div>
       <p class="small">
         {where}
-        {robot.pose?.covariance != null && ` ${t("(sure to {distance})", { distance: sureInWords(robot.pose.covariance) })}`}; {isAtInWords(robot)}.{robot.battery !== null && ` ${t("Battery {percent} %.", { percent: Math.round(100 * robot.battery) })}`}{robot.aboard.length > 0 && ` ${t("It has {aboard} aboard.", { aboard: robot.aboard.join(", ") })}`}
+        {robot.pose?.covariance != null && ` ${t("(sure to {distance})", { distance: sureInWords(robot.pose.covariance) })}`}; {isAtInWords(robot)}.{robot.battery !== null && ` ${t("Battery {percent} %.", { percent: Math.round(100 * robot.battery) })}`}{robot.aboard.length > 0 && ` ${hasInWords(robot, requests)}`}
       </p>
       {came !== null && <p class="small quiet">{errandInWords(came)}</p>}
       {may("operator") && (fleet.robots.length > FEW ? <FoldedDeeds {...{ fleet, robot, changed }} /> : <Deeds {...{ fleet, robot, changed }} />)}

@@ -3,7 +3,8 @@ import { useId, useState } from "preact/hooks";
 import type { FleetView, RequestKind } from "../wire/types";
 import { Confirming } from "./confirming";
 import { InWords } from "./in_words";
-import { byFloor, placeMeant, said } from "./places";
+import { exampleFor } from "./example";
+import { placeMeant, said } from "./places";
 import { Refused } from "./refused";
 import { Unanswered } from "./unanswered";
 import type { RequestDocument, UseAsking } from "./use_asking";
@@ -150,15 +151,6 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
       {asking.phase === "refused" && <Refused refused={asking} clock={clock} ask={(request) => void ask(request)} />}
     </section>
   );
-}
-
-/** A sentence in English, as it is understood, about places that are there, on different floors where there are several. */
-function exampleFor(places: readonly string[]): string {
-  const floors = [...byFloor(places).values()];
-  const [origin] = floors[0] ?? [];
-  const destination = floors.length > 1 ? floors.at(-1)?.[0] : floors[0]?.[1];
-  if (origin === undefined || destination === undefined) return "come to room 203";
-  return `bring the mail from ${said(origin)} to ${said(destination)}`;
 }
 
 /** The wish with places for what was written, and what is wrong with that. */

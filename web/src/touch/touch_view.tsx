@@ -3,6 +3,7 @@ import { useState } from "preact/hooks";
 import { Connection } from "../app/header";
 import { robotName } from "../question/fault_words";
 import { Confirming } from "../requests/confirming";
+import { exampleFor } from "../requests/example";
 import { Followed } from "../requests/followed";
 import { InWords } from "../requests/in_words";
 import { Refused, refusedInShort } from "../requests/refused";
@@ -178,10 +179,4 @@ function heard(asking: Asking, readBack: string): string {
   if (asking.phase === "booked") return t("All right. {request}.", { request: wanted(asking.request, said) });
   if (asking.phase === "unknown") return notKnown();
   return asking.phase === "refused" ? refusedInShort(asking.by) : readBack;
-}
-
-/** A sentence in English, as it is understood, about a place that is there. */
-function exampleFor(places: readonly string[], here: string | null): string {
-  const other = places.find((place) => place !== here);
-  return other === undefined ? "come here" : `bring this to ${said(other)}`;
 }
