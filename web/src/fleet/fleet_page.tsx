@@ -171,6 +171,7 @@ function useStandings(fleet: FleetView): ReadonlyMap<string, Standing> {
 }
 
 interface RequestsProps {
+  site: SiteView;
   requests: readonly RequestView[];
   events: readonly FleetEvent[];
   moment: Moment;
@@ -178,9 +179,10 @@ interface RequestsProps {
   again(): void;
 }
 
-function Requests({ requests, events, moment, now, again }: RequestsProps) {
+function Requests({ site, requests, events, moment, now, again }: RequestsProps) {
   const newest = moment.newest.value;
   const time = newest ? now : moment.time.value;
+  const clock = { now: time, speed: site.speed };
   const shown = newest ? requests : requestsAfter(eventsUntil(events, time));
   const open = shown.filter((each) => !isOver(each));
   const over = shown.filter(isOver).reverse();
@@ -191,11 +193,11 @@ function Requests({ requests, events, moment, now, again }: RequestsProps) {
         <a href="/requests">{t("Ask for something")}</a>
       </div>
       {open.length === 0 && <p class="quiet">{newest ? t("Nothing is asked for just now.") : t("Nothing is asked for at that moment.")}</p>}
-      <RequestList label={t("Open requests")} requests={open} now={time} {...(newest && { changed: again })} />
+      <RequestList label={t("Open requests")} requests={open} clock={clock} {...(newest && { changed: again })} />
       {over.length > 0 && (
         <details>
           <summary>{tn("{count} that is over", "{count} that are over", { count: over.length })}</summary>
-          <RequestList label={t("Requests that are over")} requests={over} now={time} />
+          <RequestList label={t("Requests that are over")} requests={over} clock={clock} />
         </details>
       )}
     </section>

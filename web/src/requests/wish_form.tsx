@@ -7,7 +7,7 @@ import { byFloor, placeMeant, said } from "./places";
 import { Refused } from "./refused";
 import { Unanswered } from "./unanswered";
 import type { RequestDocument, UseAsking } from "./use_asking";
-import { type Kind, missing, newName, NO_WISH, requestOf, type Wish } from "./wish";
+import { type Kind, missing, newName, NO_WISH, requestOf, type Wish, withinWhat } from "./wish";
 import type { SiteClock } from "./when";
 import { t } from "../words/words";
 
@@ -121,7 +121,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
             <PlaceField label={t("Where")} list={list} value={wish.place} onInput={(place) => fill({ place })} />
           )}
           <div class="field">
-            <label for="wish-within">{t("Within minutes (optional)")}</label>
+            <label for="wish-within">{withinWhat(clock)}</label>
             <input
               id="wish-within"
               type="text"
