@@ -173,6 +173,26 @@ async def test_the_past_shows_what_is_kept_of_it_and_says_what_is_not(
     await expect(page.get_by_text("Which ways were closed at that moment is")).to_be_hidden()
 
 
+async def test_no_robot_is_seen_any_more_where_the_service_is_gone(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service, robots=2)
+    page = await open_page("/fleet", **CALM)
+    marks = page.locator(".plan-robot.robot-not-seen")
+    for name in NAMES:
+        await expect(row(page, name)).to_contain_text("Idle", timeout=LONG_MS)
+    await expect(marks).to_have_count(0)
+    await page.context.set_offline(True)
+    for name in NAMES:
+        await expect(row(page, name)).to_contain_text("Not seen", timeout=LONG_MS)
+        await expect(row(page, name)).to_contain_text(re.compile(r"Last seen \d+ s ago, on F1"))
+    await expect(marks).to_have_count(2)
+    await page.context.set_offline(False)
+    for name in NAMES:
+        await expect(row(page, name)).to_contain_text("Idle", timeout=LONG_MS)
+    await expect(marks).to_have_count(0)
+
+
 async def test_what_its_robots_ask_is_answered_there(service: Service, open_page: OpenPage) -> None:
     site = await open_office_with_fleet(service, 5.0, answers="live")
     await service.fleets.submit(site, PARCEL, None)
