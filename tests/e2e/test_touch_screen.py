@@ -310,6 +310,25 @@ async def test_whoever_goes_away_leaves_the_start_to_who_comes_next(
     await expect(page.get_by_text("What may I do for you?")).to_be_visible()
 
 
+async def test_a_robot_that_is_not_connected_says_so_and_not_where_it_is(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await at_robot(service, open_page, floors=1)
+    head = page.locator(".touch-head")
+    await expect(head).to_contain_text("I am at F1 charger1.")
+    await expect(head.get_by_role("status")).to_have_text("Connected")
+
+    async def be_gone(route: Route) -> None:
+        found = await (await route.fetch()).json()
+        await route.fulfill(json={**found, "connected": False})
+
+    await page.route("**/asking", be_gone)
+    await expect(head.get_by_role("status")).to_have_text("I am not connected.", timeout=LONG_MS)
+    await expect(head).not_to_contain_text("I am at")
+    await page.unroute("**/asking")
+    await expect(head.get_by_role("status")).to_have_text("Connected", timeout=LONG_MS)
+
+
 async def test_a_robot_that_is_not_there_is_said_to_be_none(
     service: Service, open_page: OpenPage
 ) -> None:

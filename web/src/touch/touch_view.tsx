@@ -41,8 +41,8 @@ export function TouchView({ robot: name }: { robot: string }) {
     <section class="page touch">
       <div class="touch-head">
         <h1>{robotName(name)}</h1>
-        {robot?.here != null && <p class="quiet">{t("I am at {here}.", { here: said(robot.here) })}</p>}
-        <Connection />
+        {robot?.connected && robot.here !== null && failure === "" && <p class="quiet">{t("I am at {here}.", { here: said(robot.here) })}</p>}
+        <Connection but={robot?.connected === false ? t("I am not connected.") : ""} />
         {voices && (
           <button class="button" type="button" aria-pressed={soundOn.value} onClick={() => (soundOn.value = !soundOn.value)}>
             {t("Read aloud")}
