@@ -211,6 +211,10 @@ async def test_what_is_not_known_to_be_booked_is_said_so_and_asked_for_once_more
         await press(page, "Yes, that is right")
         await until_it_is_not_known(page)
         await expect(page.get_by_text("That cannot be done")).to_be_hidden()
+    # The service is there again: what is said of it is what was, beside that there is a connection.
+    await expect(page.get_by_role("status").filter(has_text="Connected")).to_be_visible()
+    await expect(page.get_by_text("No answer has come.")).to_be_visible()
+    await expect(page.get_by_text("does not answer")).to_be_hidden()
     await press(page, "Try once more")
     await expect(page.get_by_role("region", name="Your request")).to_contain_text("Come to F1 106")
     assert len(await service.fleets.requests(None)) == 1
