@@ -154,7 +154,7 @@ async def test_the_past_shows_what_is_kept_of_it_and_says_what_is_not(
     await expect(page.get_by_text("2 that are over")).to_be_visible(timeout=LONG_MS)
     await page.get_by_label("Moment of the building").fill("1")
     requests = page.get_by_role("list", name="Open requests")
-    await expect(requests).to_contain_text("Bring the blue parcel from F1/101 to F1/106")
+    await expect(requests).to_contain_text("Bring the blue parcel from F1 101 to F1 106")
     await expect(requests.get_by_text("Under way")).to_be_visible()
     await expect(requests.get_by_role("button")).to_have_count(0)
     await expect(page.get_by_text("Which ways were closed at that moment is not")).to_be_visible()

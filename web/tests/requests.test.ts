@@ -17,11 +17,11 @@ const at = (now: number, speed: SiteClock["speed"] = 1): SiteClock => ({ now, sp
 
 describe("words of requests", () => {
   it.each([
-    [{ kind: "transport", what: "mail", origin: "F1/101", destination: "F2/203" }, "Bring mail from F1/101 to F2/203"],
-    [{ kind: "transport", what: "this", origin: "F1/101", destination: "F2/203" }, "Bring this from F1/101 to F2/203"],
-    [{ kind: "deliver_message", message: "Lunch.", place: "F1/101" }, "Tell “Lunch.” at F1/101"],
-    [{ kind: "go_to_room", place: "F1/101" }, "Come to F1/101"],
-    [{ kind: "escort", person: "Ann", origin: "hall", destination: "F1/101" }, "Show Ann the way from hall to F1/101"],
+    [{ kind: "transport", what: "mail", origin: "F1/101", destination: "F2/203" }, "Bring mail from F1 101 to F2 203"],
+    [{ kind: "transport", what: "this", origin: "F1/101", destination: "F2/203" }, "Bring this from F1 101 to F2 203"],
+    [{ kind: "deliver_message", message: "Lunch.", place: "F1/101" }, "Tell “Lunch.” at F1 101"],
+    [{ kind: "go_to_room", place: "F1/101" }, "Come to F1 101"],
+    [{ kind: "escort", person: "Ann", origin: "hall", destination: "F1/101" }, "Show Ann the way from hall to F1 101"],
   ])("say what is wanted", (what, said) => {
     expect(wanted(request(what))).toBe(said);
   });

@@ -2,6 +2,7 @@
 import { robotName } from "../question/fault_words";
 import type { RequestStatus, RequestView } from "../wire/types";
 import { t } from "../words/words";
+import { placeInWords } from "./places";
 import { ownSeconds, type SiteClock, within } from "./when";
 import { isPointedAt } from "./wish";
 
@@ -34,10 +35,10 @@ export function isOver({ status }: RequestView): boolean {
   return OVER.has(status);
 }
 
-/** What somebody wants, in a sentence; `named` says how places are called. */
-export function wanted({ what }: RequestView, named = (place: string) => place): string {
+/** What somebody wants, in a sentence. */
+export function wanted({ what }: RequestView): string {
   const said = (field: string) => String(what[field] ?? "");
-  const at = (field: string) => named(said(field));
+  const at = (field: string) => placeInWords(said(field));
   switch (what.kind) {
     case "transport":
       return isPointedAt(said("what"))

@@ -3,7 +3,7 @@ import { useId, useState } from "preact/hooks";
 import type { FleetView, RequestKind } from "../wire/types";
 import { Confirming } from "./confirming";
 import { InWords } from "./in_words";
-import { byFloor, placeMeant, said } from "./places";
+import { byFloor, placeInWords, placeMeant } from "./places";
 import { Refused } from "./refused";
 import { Unanswered } from "./unanswered";
 import type { RequestDocument, UseAsking } from "./use_asking";
@@ -134,7 +134,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
         </div>
         <datalist id={list}>
           {fleet.places.map((place) => (
-            <option key={place} value={said(place)} />
+            <option key={place} value={placeInWords(place)} />
           ))}
         </datalist>
         <p class="mistake" role="alert">
@@ -158,7 +158,7 @@ function exampleFor(places: readonly string[]): string {
   const [origin] = floors[0] ?? [];
   const destination = floors.length > 1 ? floors.at(-1)?.[0] : floors[0]?.[1];
   if (origin === undefined || destination === undefined) return "come to room 203";
-  return `bring the mail from ${said(origin)} to ${said(destination)}`;
+  return `bring the mail from ${placeInWords(origin)} to ${placeInWords(destination)}`;
 }
 
 /** The wish with places for what was written, and what is wrong with that. */
