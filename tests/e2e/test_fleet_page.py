@@ -231,6 +231,18 @@ async def test_what_may_be_said_to_one_of_many_robots_is_folded(
     await expect(home).to_be_visible()
 
 
+async def test_an_address_that_names_the_building_otherwise_leads_to_it(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service)
+    second = await open_office_with_fleet(service)
+    page = await open_page(f"/fleet?site={second}", **CALM)
+    await expect(page.get_by_role("combobox", name="Building")).to_have_value(
+        str(second), timeout=LONG_MS
+    )
+    await expect(page).to_have_url(re.compile(f"/fleet/{second}$"))
+
+
 async def test_without_a_fleet_the_page_says_so(open_page: OpenPage) -> None:
     page = await open_page("/fleet")
     await expect(page.get_by_text("No robots take requests")).to_be_visible(timeout=LONG_MS)
