@@ -46,10 +46,12 @@ class UnderstoodView(View):
 
 class AskedRobotView(View):
     """A robot at whose touch screen somebody may ask: where it is (`here`, as `FLOOR/PLACE`; None
-    where no robot is sent), and for what kinds of requests."""
+    where no robot is sent), and for what kinds of requests. Where one that is not `connected` is,
+    nobody knows: `here` is where it was last."""
 
     site: UUID
     robot: str
+    connected: bool
     here: str | None
     kinds: list[RequestKind]
 
@@ -57,7 +59,11 @@ class AskedRobotView(View):
 def asked_robot(fleet: "FleetAtWork", robot: str) -> AskedRobotView:
     """What somebody finds at a robot's touch screen. Raises `NotFoundError`."""
     return AskedRobotView(
-        site=fleet.site, robot=robot, here=fleet.stands_at(robot), kinds=fleet.requesters.kinds
+        site=fleet.site,
+        robot=robot,
+        here=fleet.stands_at(robot),
+        connected=fleet.is_connected(robot),
+        kinds=fleet.requesters.kinds,
     )
 
 

@@ -154,7 +154,7 @@ async def test_the_past_shows_what_is_kept_of_it_and_says_what_is_not(
     await expect(page.get_by_text("2 that are over")).to_be_visible(timeout=LONG_MS)
     await page.get_by_label("Moment of the building").fill("1")
     requests = page.get_by_role("list", name="Open requests")
-    await expect(requests).to_contain_text("Bring the blue parcel from F1/101 to F1/106")
+    await expect(requests).to_contain_text("Bring the blue parcel from F1 101 to F1 106")
     await expect(requests.get_by_text("Under way")).to_be_visible()
     await expect(requests.get_by_role("button")).to_have_count(0)
     await expect(page.get_by_text("Which ways were closed at that moment is not")).to_be_visible()
@@ -171,6 +171,26 @@ async def test_the_past_shows_what_is_kept_of_it_and_says_what_is_not(
     await page.get_by_role("button", name="Back to live").click()
     await expect(told).to_have_count(1)
     await expect(page.get_by_text("Which ways were closed at that moment is")).to_be_hidden()
+
+
+async def test_no_robot_is_seen_any_more_where_the_service_is_gone(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service, robots=2)
+    page = await open_page("/fleet", **CALM)
+    marks = page.locator(".plan-robot.robot-not-seen")
+    for name in NAMES:
+        await expect(row(page, name)).to_contain_text("Idle", timeout=LONG_MS)
+    await expect(marks).to_have_count(0)
+    await page.context.set_offline(True)
+    for name in NAMES:
+        await expect(row(page, name)).to_contain_text("Not seen", timeout=LONG_MS)
+        await expect(row(page, name)).to_contain_text(re.compile(r"Last seen \d+ s ago, on F1"))
+    await expect(marks).to_have_count(2)
+    await page.context.set_offline(False)
+    for name in NAMES:
+        await expect(row(page, name)).to_contain_text("Idle", timeout=LONG_MS)
+    await expect(marks).to_have_count(0)
 
 
 async def test_what_its_robots_ask_is_answered_there(service: Service, open_page: OpenPage) -> None:
@@ -209,6 +229,18 @@ async def test_what_may_be_said_to_one_of_many_robots_is_folded(
     await expect(home).to_be_hidden()
     await row(page, "ROBOT7").get_by_text("Send it, or take it out of service").click()
     await expect(home).to_be_visible()
+
+
+async def test_an_address_that_names_the_building_otherwise_leads_to_it(
+    service: Service, open_page: OpenPage
+) -> None:
+    await open_office_with_fleet(service)
+    second = await open_office_with_fleet(service)
+    page = await open_page(f"/fleet?site={second}", **CALM)
+    await expect(page.get_by_role("combobox", name="Building")).to_have_value(
+        str(second), timeout=LONG_MS
+    )
+    await expect(page).to_have_url(re.compile(f"/fleet/{second}$"))
 
 
 async def test_without_a_fleet_the_page_says_so(open_page: OpenPage) -> None:

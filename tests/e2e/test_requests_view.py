@@ -44,7 +44,7 @@ async def test_something_is_asked_for_and_followed_until_it_is_done(
     await page.get_by_label("To", exact=True).fill("F1 103")
     await page.get_by_role("button", name="Ask for it", exact=True).click()
     over = page.get_by_role("list", name="Requests that are over")
-    row = over.get_by_role("listitem").filter(has_text="Bring the mail from F1/101 to F1/103")
+    row = over.get_by_role("listitem").filter(has_text="Bring the mail from F1 101 to F1 103")
     await expect(row).to_contain_text("Done", timeout=LONG_MS)
     await expect(page.get_by_label("What is to be brought")).to_have_value("")
 
@@ -71,7 +71,7 @@ async def test_what_cannot_be_met_in_time_is_offered_for_when_it_can(office: Reo
     ).to_be_visible()
     await page.get_by_role("button", name="instead").click()
     open_ones = page.get_by_role("list", name="Open requests")
-    await expect(open_ones).to_contain_text("Tell “Lunch is ready.” at F1/106", timeout=LONG_MS)
+    await expect(open_ones).to_contain_text("Tell “Lunch is ready.” at F1 106", timeout=LONG_MS)
 
 
 async def test_what_is_not_known_to_be_booked_is_booked_once_however_it_is_asked_for_again(
@@ -126,7 +126,7 @@ async def test_what_is_no_longer_wanted_is_cancelled(office: Reopen) -> None:
     await page.get_by_label("Have a robot come").check(timeout=LONG_MS)
     await page.get_by_label("Where").fill("F1 106")
     await page.get_by_role("button", name="Ask for it", exact=True).click()
-    await page.get_by_role("button", name="Cancel: Come to F1/106").click(timeout=LONG_MS)
+    await page.get_by_role("button", name="Cancel: Come to F1 106").click(timeout=LONG_MS)
     over = page.get_by_role("list", name="Requests that are over")
     await expect(over).to_contain_text("Cancelled", timeout=LONG_MS)
 

@@ -211,6 +211,10 @@ async def test_what_is_not_known_to_be_booked_is_said_so_and_asked_for_once_more
         await press(page, "Yes, that is right")
         await until_it_is_not_known(page)
         await expect(page.get_by_text("That cannot be done")).to_be_hidden()
+    # The service is there again: what is said of it is what was, beside that there is a connection.
+    await expect(page.get_by_role("status").filter(has_text="Connected")).to_be_visible()
+    await expect(page.get_by_text("No answer has come.")).to_be_visible()
+    await expect(page.get_by_text("does not answer")).to_be_hidden()
     await press(page, "Try once more")
     await expect(page.get_by_role("region", name="Your request")).to_contain_text("Come to F1 106")
     assert len(await service.fleets.requests(None)) == 1
@@ -308,6 +312,25 @@ async def test_whoever_goes_away_leaves_the_start_to_who_comes_next(
     await expect(page.get_by_role("heading", name="Where am I to come?")).to_be_focused()
     await page.clock.fast_forward("02:00")
     await expect(page.get_by_text("What may I do for you?")).to_be_visible()
+
+
+async def test_a_robot_that_is_not_connected_says_so_and_not_where_it_is(
+    service: Service, open_page: OpenPage
+) -> None:
+    page = await at_robot(service, open_page, floors=1)
+    head = page.locator(".touch-head")
+    await expect(head).to_contain_text("I am at F1 charger1.")
+    await expect(head.get_by_role("status")).to_have_text("Connected")
+
+    async def be_gone(route: Route) -> None:
+        found = await (await route.fetch()).json()
+        await route.fulfill(json={**found, "connected": False})
+
+    await page.route("**/asking", be_gone)
+    await expect(head.get_by_role("status")).to_have_text("I am not connected.", timeout=LONG_MS)
+    await expect(head).not_to_contain_text("I am at")
+    await page.unroute("**/asking")
+    await expect(head.get_by_role("status")).to_have_text("Connected", timeout=LONG_MS)
 
 
 async def test_a_robot_that_is_not_there_is_said_to_be_none(

@@ -312,6 +312,7 @@ async def test_words_are_understood_read_back_and_asked_for_over_rest(tmp_path: 
         robot = (await client.fleet(site)).robots[0].robot
         there = await client.asked_robot(site, robot)
         assert there.here is not None
+        assert there.connected
         assert {"transport", "deliver_message", "go_to_room"} <= set(there.kinds)
 
         words = "bring this to two oh three by three o'clock"

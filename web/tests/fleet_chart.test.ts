@@ -109,6 +109,6 @@ describe("the past of a fleet", () => {
     const replanned = event("plan_changed", 50, { number: 1, reason: "it is late", requests: ["tea"], robots: [TWO], said: {} });
     const [tea] = requestsAfter([event("request_changed", 1, booked), replanned]);
     expect(tea?.expected).toBe(null);
-    expect(expectation(tea!, 60)).toBe("");
+    expect(expectation(tea!, { now: 60, speed: 1 })).toBe("");
   });
 });

@@ -2,9 +2,11 @@
 import { describe, expect, it } from "vitest";
 import { likelyEllipse } from "../src/building/likely_ellipse";
 import { planOf } from "../src/building/plan";
+import { seenRobots } from "../src/building/seen_robots";
 import { type FleetEvent, legsAfter } from "../src/fleet/fleet_past";
 import { fleetAtWork, fleetAtWorkThen, standingsOf } from "../src/fleet/fleet_robots";
 import { closedInWords, hasInWords, isAtInWords, sureInWords } from "../src/fleet/fleet_words";
+import { silence } from "../src/fleet/silence";
 import { closedWay, sameWay } from "../src/fleet/picked";
 import type { FleetRobot, FleetView, RequestView } from "../src/wire/types";
 import { OFFICE } from "./office_scene";
@@ -27,18 +29,35 @@ describe("robots of a fleet", () => {
   });
 
   it("move while their place changes from one reading to the next", () => {
-    const first = standingsOf(fleet(robot({ pose: pose(1) })), new Map());
+    const first = standingsOf(fleet(robot({ pose: pose(1) })), new Map(), 0);
     expect(first.get(ONE)?.moving).toBe(false);
-    expect(standingsOf(fleet(robot({ pose: pose(2) })), first).get(ONE)?.moving).toBe(true);
-    expect(standingsOf(fleet(robot()), first).size).toBe(0);
+    expect(standingsOf(fleet(robot({ pose: pose(2) })), first, 0).get(ONE)?.moving).toBe(true);
+    expect(standingsOf(fleet(robot()), first, 0).size).toBe(0);
   });
 
   it("are not seen where they are gone, or at work and silent; who rests stays where it is", () => {
-    const seen = (fields: object) => standingsOf(fleet(robot(fields)), new Map()).get(ONE)?.seen_s;
+    const seen = (fields: object) => standingsOf(fleet(robot(fields)), new Map(), 0).get(ONE)?.seen_s;
     expect(seen({ pose: pose(1, 60) })).toBeNull();
     expect(seen({ pose: pose(1, 60), at_work })).toBe(60);
     expect(seen({ pose: pose(1, 2), at_work })).toBeNull();
     expect(seen({ pose: pose(1, 2), connected: false })).toBe(2);
+  });
+
+  it("are not seen, and drive nowhere, while nothing comes of the whole fleet", () => {
+    const about = { plan, past: false, atLeast: false };
+    const moves = standingsOf(fleet(robot({ pose: pose(1), at_work })), new Map(), 0);
+    for (const fields of [{ at_work }, {}]) {
+      const silent = fleet(robot({ ...fields, pose: pose(2, 1) }));
+      const [shown] = seenRobots(fleetAtWork(silent, plan, new Map()), [standingsOf(silent, moves, 4).get(ONE)!], about);
+      expect(shown).toMatchObject({ unseen: "last seen 5 s ago", short: "last seen 5 s ago" });
+      expect(shown?.activity).not.toBe("driving");
+    }
+  });
+
+  it("are heard of while readings come, which may be late", () => {
+    expect(silence(1_000, 1_500)).toBe(0);
+    expect(silence(1_000, 3_900)).toBe(0);
+    expect(silence(1_000, 18_700)).toBe(17);
   });
 
   it("say what they are at", () => {

@@ -15,10 +15,12 @@ const CONNECTION: Readonly<Record<ConnectionState, string>> = {
   closed: t("Not connected"),
 };
 
-export function Connection() {
+/** `but`: what keeps that there is a connection from being all there is to say; empty where nothing does. */
+export function Connection({ but = "" }: { but?: string }) {
+  const state = connection.value === "connected" && but !== "" ? "lost" : connection.value;
   return (
-    <p class={`connection ${connection.value}`} role="status">
-      {CONNECTION[connection.value]}
+    <p class={`connection ${state}`} role="status">
+      {state === connection.value ? CONNECTION[state] : but}
     </p>
   );
 }

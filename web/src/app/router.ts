@@ -24,7 +24,7 @@ type Page = "runs" | "issues" | "statistics" | "trees" | "scenes" | "models" | "
 
 const PAGES: ReadonlySet<Page> = new Set<Page>(["runs", "issues", "statistics", "trees", "scenes", "models", "requests", "settings"]);
 
-const path = signal(location.pathname);
+const path = signal(settled());
 
 export const route = computed(() => routeOf(path.value));
 
@@ -44,6 +44,23 @@ export function routeOf(address: string): Route {
   else if (first === "edit_scene") return { view: first, scene: second };
   else if (first === "edit" || first === "start") return { view: first, tree: second };
   return { view: "unknown", path: address };
+}
+
+/** The path of the address that is shown, which is put as it is kept. */
+function settled(): string {
+  const kept = keptAddress(location.pathname, location.search);
+  if (kept !== location.pathname + location.search) history.replaceState(null, "", kept);
+  return location.pathname;
+}
+
+/** An address as it is kept: the building of a fleet has one of its own, also where a link names it as `?site=`. */
+export function keptAddress(path: string, search: string): string {
+  const said = new URLSearchParams(search);
+  const site = said.get("site");
+  if (path !== "/fleet" || site === null || site === "") return path + search;
+  said.delete("site");
+  const rest = said.toString();
+  return `/fleet/${encodeURIComponent(site)}${rest === "" ? "" : `?${rest}`}`;
 }
 
 /** Asked before the view is left: calls `leave` now or later, or never. */
@@ -67,11 +84,11 @@ export function go(address: string): void {
 function show(address: string): void {
   guard = null;
   if (address !== location.pathname + location.search) history.pushState(null, "", address);
-  path.value = location.pathname;
+  path.value = settled();
 }
 
 addEventListener("popstate", () => {
-  const address = location.pathname;
+  const address = settled();
   if (guard === null || address === path.value) {
     path.value = address;
     return;

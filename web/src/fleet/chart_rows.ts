@@ -1,11 +1,12 @@
 // The rows of a fleet's chart: what each robot did, is at and is to do, and why its plan changed.
 import { howLong } from "../building/standing";
 import { robotName } from "../question/fault_words";
+import { placeInWords } from "../requests/places";
 import { sentence } from "../run/run_words";
 import type { Lane, TimelineItem } from "../run/timeline/lanes";
 import type { ErrandBegun, FleetRobot, LegBegun, LegEnded, PlannedStop } from "../wire/types";
 import type { FleetEvent } from "./fleet_past";
-import { authorInWords, doesInWords, placeInWords, wholeClock } from "./fleet_words";
+import { authorInWords, doesInWords, wholeClock } from "./fleet_words";
 import { t } from "../words/words";
 
 /** What passes from one robot to another: rows, and when it is given and taken. */

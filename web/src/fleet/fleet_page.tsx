@@ -23,6 +23,7 @@ import { askingOf, FleetQuestions } from "./fleet_questions";
 import { fleetAtWork, fleetAtWorkThen, standingsOf } from "./fleet_robots";
 import type { Picked } from "./picked";
 import { RobotsList } from "./robots_list";
+import { useSilence } from "./silence";
 import { usePastStandings } from "./use_past_standings";
 import { useSiteEvents } from "./use_site_events";
 import { WaysPanel } from "./ways_panel";
@@ -64,7 +65,7 @@ function SiteChoice({ sites, site }: { sites: readonly SiteView[]; site: SiteVie
 }
 
 function OfSite({ site }: { site: SiteView }) {
-  const { requests, fleet, failure, again } = useRequests(site.id, AGAIN_MS);
+  const { requests, fleet, heard, failure, again } = useRequests(site.id, AGAIN_MS);
   const events = useSiteEvents(site.id);
   const plan = useScenePlan(site.scene);
   const moment = useMemo(createMoment, [site.id]);
@@ -79,7 +80,7 @@ function OfSite({ site }: { site: SiteView }) {
       </p>
       {(fleet === null || events === null || plan === null) && failure === "" && <p class="quiet">{t("Loading …")}</p>}
       {fleet !== null && events !== null && plan !== null && (
-        <Shown {...{ site, fleet, events, plan, moment, again }} requests={requests ?? []} />
+        <Shown {...{ site, fleet, heard, events, plan, moment, again }} requests={requests ?? []} />
       )}
     </>
   );
@@ -105,6 +106,8 @@ function useScenePlan(scene: string): Plan | null {
 interface ShownProps {
   site: SiteView;
   fleet: FleetView;
+  /** When it was read, as `performance.now()`. */
+  heard: number;
   events: readonly FleetEvent[];
   requests: readonly RequestView[];
   plan: Plan;
@@ -112,12 +115,12 @@ interface ShownProps {
   again(): void;
 }
 
-function Shown({ site, fleet, events, requests, plan, moment, again }: ShownProps) {
+function Shown({ site, fleet, heard, events, requests, plan, moment, again }: ShownProps) {
   const newest = moment.newest.value;
   useMomentInAddress(moment, events.length > 0);
   const [picked, setPicked] = useState<Picked>(null);
   const names = fleet.robots.map(({ robot }) => robot);
-  const live = useStandings(fleet);
+  const live = useStandings(fleet, useSilence(heard));
   const then = usePastStandings(site.id, names, moment);
   const positions = newest ? live : then;
   const robots = newest
@@ -160,10 +163,10 @@ function pastInWords(known: boolean): string {
   return known ? t("Which ways were closed at that moment is not shown.") : t("Where robots were at that moment was not recorded.");
 }
 
-/** Where robots are, and whether they have moved since the last reading. */
-function useStandings(fleet: FleetView): ReadonlyMap<string, Standing> {
+/** Where robots are, and whether they have moved since the last reading, `silent_s` ago. */
+function useStandings(fleet: FleetView, silent_s: number): ReadonlyMap<string, Standing> {
   const before = useRef<ReadonlyMap<string, Standing>>(new Map());
-  const now = useMemo(() => standingsOf(fleet, before.current), [fleet]);
+  const now = useMemo(() => standingsOf(fleet, before.current, silent_s), [fleet, silent_s]);
   useEffect(() => {
     before.current = now;
   }, [now]);
@@ -171,6 +174,7 @@ function useStandings(fleet: FleetView): ReadonlyMap<string, Standing> {
 }
 
 interface RequestsProps {
+  site: SiteView;
   requests: readonly RequestView[];
   events: readonly FleetEvent[];
   moment: Moment;
@@ -178,9 +182,10 @@ interface RequestsProps {
   again(): void;
 }
 
-function Requests({ requests, events, moment, now, again }: RequestsProps) {
+function Requests({ site, requests, events, moment, now, again }: RequestsProps) {
   const newest = moment.newest.value;
   const time = newest ? now : moment.time.value;
+  const clock = { now: time, speed: site.speed };
   const shown = newest ? requests : requestsAfter(eventsUntil(events, time));
   const open = shown.filter((each) => !isOver(each));
   const over = shown.filter(isOver).reverse();
@@ -191,11 +196,11 @@ function Requests({ requests, events, moment, now, again }: RequestsProps) {
         <a href="/requests">{t("Ask for something")}</a>
       </div>
       {open.length === 0 && <p class="quiet">{newest ? t("Nothing is asked for just now.") : t("Nothing is asked for at that moment.")}</p>}
-      <RequestList label={t("Open requests")} requests={open} now={time} {...(newest && { changed: again })} />
+      <RequestList label={t("Open requests")} requests={open} clock={clock} {...(newest && { changed: again })} />
       {over.length > 0 && (
         <details>
           <summary>{tn("{count} that is over", "{count} that are over", { count: over.length })}</summary>
-          <RequestList label={t("Requests that are over")} requests={over} now={time} />
+          <RequestList label={t("Requests that are over")} requests={over} clock={clock} />
         </details>
       )}
     </section>

@@ -30,17 +30,17 @@ function goalOf(leg: FleetLeg | null, plan: Plan): Goal | null {
   return place === null ? null : { x: place.x, y: place.y, z: place.z, name: place.name, floor: place.floor };
 }
 
-/** Where robots say that they are; `before` are those of the last reading, to tell who moves. */
-export function standingsOf(fleet: FleetView, before: ReadonlyMap<string, Standing>): ReadonlyMap<string, Standing> {
+/** Where robots say that they are; `before` are those of the last reading, to tell who moves, and for `silent_s` nothing has come. */
+export function standingsOf(fleet: FleetView, before: ReadonlyMap<string, Standing>, silent_s: number): ReadonlyMap<string, Standing> {
   return new Map(
     fleet.robots.flatMap(({ robot, pose, at_work, connected }) => {
       if (pose === null) return [];
       const { x, y, z, yaw, covariance } = pose;
       const was = before.get(robot);
-      const moving = was !== undefined && Math.hypot(was.x - x, was.y - y) + Math.abs(was.z - z) > MOVED_M;
-      // Who has nothing to do stands where it was, whatever the time.
-      const old = !connected || (at_work !== null && pose.age_s > OLD_S);
-      const standing: Standing = { x, y, z, yaw, moving, seen_s: old ? pose.age_s : null, covariance };
+      const moving = silent_s === 0 && was !== undefined && Math.hypot(was.x - x, was.y - y) + Math.abs(was.z - z) > MOVED_M;
+      // Who has nothing to do stands where it was, whatever the time, as long as somebody can say that it is connected.
+      const old = silent_s > 0 || !connected || (at_work !== null && pose.age_s > OLD_S);
+      const standing: Standing = { x, y, z, yaw, moving, seen_s: old ? pose.age_s + silent_s : null, covariance };
       return [[robot, standing] as const];
     }),
   );

@@ -1,6 +1,7 @@
 // How the console speaks of a fleet: what robots do and are to do, and what is known of ways.
 import { likelyEllipse } from "../building/likely_ellipse";
 import { robotName } from "../question/fault_words";
+import { placeInWords } from "../requests/places";
 import { clock } from "../run/run_words";
 import { isPointedAt } from "../requests/wish";
 import type { ClosedWayView, FleetRobot, RequestView } from "../wire/types";
@@ -29,11 +30,6 @@ const UNNAMED: ReadonlySet<string> = new Set(["anybody", "token"]);
 
 export function authorInWords(author: { principal: string } | null): string {
   return author === null || UNNAMED.has(author.principal) ? t("somebody") : author.principal;
-}
-
-/** "F1 101" of "F1/101", as people read it. */
-export function placeInWords(place: string): string {
-  return place.replace("/", " ");
 }
 
 /** What a robot is at now, as a clause after its name. */

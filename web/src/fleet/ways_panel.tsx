@@ -2,11 +2,12 @@
 import { useState } from "preact/hooks";
 import type { Plan, PlanLane } from "../building/plan";
 import { robotName } from "../question/fault_words";
+import { placeInWords } from "../requests/places";
 import { sentence } from "../run/run_words";
 import { may, whyNot } from "../state/access";
 import * as rest from "../wire/rest";
 import type { ClosedWayView, FleetView, WayReport } from "../wire/types";
-import { closedInWords, placeInWords } from "./fleet_words";
+import { closedInWords } from "./fleet_words";
 import { closedWay, type Picked, sameWay } from "./picked";
 import { whyNotDone } from "../words/said";
 import { t } from "../words/words";

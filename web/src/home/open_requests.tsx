@@ -1,5 +1,6 @@
 // What people of one building have asked for that is not done yet.
 import { expectation, isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "../requests/request_words";
+import { clockOf } from "../requests/when";
 import { useRequests } from "../requests/use_requests";
 import { siteName } from "../run/run_words";
 import type { SiteView } from "../wire/types";
@@ -24,7 +25,7 @@ export function OpenRequests({ site }: { site: SiteView }) {
           <span class="home-state">
             <span aria-hidden="true">{STATUS_SIGNS[each.status]}</span> {STATUS_WORDS[each.status]}
           </span>
-          <span class="small quiet">{expectation(each, fleet?.now_s)}</span>
+          <span class="small quiet">{expectation(each, clockOf(site, fleet))}</span>
         </li>
       ))}
     />

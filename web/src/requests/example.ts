@@ -1,5 +1,5 @@
 // An example of what to ask for in words.
-import { byFloor, said } from "./places";
+import { byFloor, placeInWords } from "./places";
 
 /**
  * A sentence in English, as it is understood, about places that are there, on different floors where there are several.
@@ -8,11 +8,11 @@ import { byFloor, said } from "./places";
 export function exampleFor(places: readonly string[], here: string | null = null): string {
   if (here !== null) {
     const other = places.find((place) => place !== here);
-    return other === undefined ? "come here" : `bring this to ${said(other)}`;
+    return other === undefined ? "come here" : `bring this to ${placeInWords(other)}`;
   }
   const floors = [...byFloor(places).values()];
   const [origin] = floors[0] ?? [];
   const destination = floors.length > 1 ? floors.at(-1)?.[0] : floors[0]?.[1];
   if (origin === undefined || destination === undefined) return "come to room 203";
-  return `bring the mail from ${said(origin)} to ${said(destination)}`;
+  return `bring the mail from ${placeInWords(origin)} to ${placeInWords(destination)}`;
 }

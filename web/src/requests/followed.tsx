@@ -4,7 +4,6 @@ import { robotName } from "../question/fault_words";
 import { may } from "../state/access";
 import * as rest from "../wire/rest";
 import type { RequestView } from "../wire/types";
-import { said } from "./places";
 import { isOpenEnded, isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "./request_words";
 import { Waits } from "./waits";
 import { type SiteClock, when } from "./when";
@@ -30,7 +29,7 @@ export function Followed({ request, clock, changed, at }: FollowedProps) {
   return (
     <section class="panel followed" aria-label={t("Your request")}>
       <h2 ref={heading} tabIndex={-1}>
-        {wanted(request, said)}
+        {wanted(request)}
       </h2>
       <p role="status">
         <span class={`badge request-${status}`}>

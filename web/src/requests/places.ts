@@ -2,7 +2,7 @@
 import { t } from "../words/words";
 
 /** `F1/101` as people read it. */
-export function said(place: string): string {
+export function placeInWords(place: string): string {
   return place.replace("/", " ");
 }
 
@@ -18,7 +18,7 @@ export function placeMeant(written: string, places: readonly string[]): string |
   return {
     mistake: t("“{written}” is on several floors: choose {places}.", {
       written: written.trim(),
-      places: found.map(said).join(t(" or ")),
+      places: found.map(placeInWords).join(t(" or ")),
     }),
   };
 }

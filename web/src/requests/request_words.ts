@@ -1,7 +1,9 @@
 // How the console speaks of requests: what is wanted, how far it is, and when it is done.
 import { robotName } from "../question/fault_words";
 import type { RequestStatus, RequestView } from "../wire/types";
-import { t, tn } from "../words/words";
+import { t } from "../words/words";
+import { placeInWords } from "./places";
+import { ownSeconds, type SiteClock, within } from "./when";
 import { isPointedAt } from "./wish";
 
 export const STATUS_WORDS: Readonly<Record<RequestStatus, string>> = {
@@ -33,10 +35,10 @@ export function isOver({ status }: RequestView): boolean {
   return OVER.has(status);
 }
 
-/** What somebody wants, in a sentence; `named` says how places are called. */
-export function wanted({ what }: RequestView, named = (place: string) => place): string {
+/** What somebody wants, in a sentence. */
+export function wanted({ what }: RequestView): string {
   const said = (field: string) => String(what[field] ?? "");
-  const at = (field: string) => named(said(field));
+  const at = (field: string) => placeInWords(said(field));
   switch (what.kind) {
     case "transport":
       return isPointedAt(said("what"))
@@ -55,22 +57,15 @@ export function wanted({ what }: RequestView, named = (place: string) => place):
   }
 }
 
-/** When it is expected to be done, at `now` of the building's clock (seconds). */
-export function expectation(request: RequestView, now: number | undefined): string {
+/** When it is expected to be done, as people say it by their own clock. */
+export function expectation(request: RequestView, clock: SiteClock | null): string {
   const { expected } = request;
-  if (isOver(request) || expected === null || now === undefined) return "";
-  const when = { robot: robotName(expected.robot), within: within(expected.done_s - now) };
-  return isOpenEnded(request, now) ? t("{robot}, done {within} at the earliest", when) : t("{robot}, done {within}", when);
+  if (isOver(request) || expected === null || clock === null) return "";
+  const when = { robot: robotName(expected.robot), within: within(ownSeconds(expected.done_s, clock)) };
+  return isOpenEnded(request, clock.now) ? t("{robot}, done {within} at the earliest", when) : t("{robot}, done {within}", when);
 }
 
 /** Whether nobody can say until when: its robot is late already, or waits for people. */
 export function isOpenEnded({ expected, waits }: RequestView, now: number): boolean {
   return waits !== null || (expected !== null && (expected.late_s > 0 || expected.done_s < now));
-}
-
-/** "in less than a minute", "in about 4 minutes" */
-export function within(seconds: number): string {
-  const minutes = Math.round(seconds / 60);
-  if (minutes < 1) return t("in less than a minute");
-  return tn("in about {count} minute", "in about {count} minutes", { count: minutes });
 }

@@ -10,6 +10,7 @@ import { Followed } from "./followed";
 import { expectation, isOver, STATUS_SIGNS, STATUS_WORDS, wanted } from "./request_words";
 import { followed, type RequestDocument, useAsking } from "./use_asking";
 import { useKinds } from "./use_kinds";
+import { clockOf, type SiteClock } from "./when";
 import { Waits } from "./waits";
 import { useRequests } from "./use_requests";
 import { WishForm } from "./wish_form";
@@ -66,7 +67,7 @@ function OfSite({ site }: { site: SiteView }) {
   const { requests, fleet, failure, again } = useRequests(site.id);
   const { asking, ask, forget } = useAsking(site.id);
   const kinds = useKinds(site.id, fleet?.robots[0]?.robot);
-  const clock = { now: fleet?.now_s ?? 0, speed: site.speed };
+  const clock = clockOf(site, fleet);
   const mine = followed(asking, requests);
   const askAndRead = (request: RequestDocument) => ask(request).then(again);
   const open = requests?.filter((each) => !isOver(each)) ?? [];
@@ -76,8 +77,8 @@ function OfSite({ site }: { site: SiteView }) {
       <p class="mistake" role="alert">
         {failure}
       </p>
-      {mine !== null && <Followed request={mine} clock={clock} changed={again} />}
-      {fleet !== null && may("helper") && (
+      {mine !== null && clock !== null && <Followed request={mine} clock={clock} changed={again} />}
+      {fleet !== null && clock !== null && may("helper") && (
         <WishForm fleet={fleet} kinds={kinds} clock={clock} asking={asking} ask={askAndRead} forget={forget} />
       )}
       {fleet !== null && !may("helper") && <p class="quiet">{whyNot(t("Asking for something"), "helper")}</p>}
@@ -86,9 +87,9 @@ function OfSite({ site }: { site: SiteView }) {
         <>
           <h2>{t("Open")}</h2>
           {open.length === 0 && <p class="quiet">{t("Nothing is asked for just now.")}</p>}
-          <RequestList label={t("Open requests")} requests={open} now={fleet?.now_s} changed={again} />
+          <RequestList label={t("Open requests")} requests={open} clock={clock} changed={again} />
           {over.length > 0 && <h2>{t("Over")}</h2>}
-          <RequestList label={t("Requests that are over")} requests={over} now={fleet?.now_s} changed={again} />
+          <RequestList label={t("Requests that are over")} requests={over} clock={clock} changed={again} />
         </>
       )}
     </>
@@ -98,23 +99,24 @@ function OfSite({ site }: { site: SiteView }) {
 interface ListProps {
   label: string;
   requests: readonly RequestView[];
-  now: number | undefined;
+  /** At the moment that is shown; null until it is known. */
+  clock: SiteClock | null;
   /** Something was cancelled; unset where nothing can be, as of the past. */
   changed?: () => void;
 }
 
-export function RequestList({ label, requests, now, changed }: ListProps) {
+export function RequestList({ label, requests, clock, changed }: ListProps) {
   if (requests.length === 0) return null;
   return (
     <ul class="requests" aria-label={label}>
       {requests.map((each) => (
-        <Row key={each.name} request={each} now={now} changed={changed} />
+        <Row key={each.name} request={each} clock={clock} changed={changed} />
       ))}
     </ul>
   );
 }
 
-function Row({ request, now, changed }: { request: RequestView; now: number | undefined; changed: (() => void) | undefined }) {
+function Row({ request, clock, changed }: { request: RequestView; clock: SiteClock | null; changed: (() => void) | undefined }) {
   const [failure, setFailure] = useState("");
   const cancel = () =>
     rest.cancelRequest(request.site, request.name).then(changed, (error: Error) => setFailure(whyNotDone(error)));
@@ -127,7 +129,7 @@ function Row({ request, now, changed }: { request: RequestView; now: number | un
       </span>
       <span class="request-wanted">
         <strong>{wanted(request)}</strong>
-        <span class="small quiet">{expectation(request, now)}</span>
+        <span class="small quiet">{expectation(request, clock)}</span>
         <Waits request={request} />
         {reason !== null && <span class="small"><Told text={`${reason.charAt(0).toUpperCase() + reason.slice(1)}.`} /></span>}
         {failure !== "" && (

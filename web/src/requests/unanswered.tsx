@@ -9,14 +9,14 @@ interface UnansweredProps {
 
 export function Unanswered({ asking, ask }: UnansweredProps) {
   if (asking.phase === "sending") {
-    return <p role="status">{asking.lost ? t("The service does not answer. I try once more …") : ""}</p>;
+    return <p role="status">{asking.lost ? t("No answer has come. I try once more …") : ""}</p>;
   }
   if (asking.phase !== "unknown") return null;
   return (
     <div class="refused">
       <div role="alert">
         <p class="mistake">{notKnown()}</p>
-        <p>{t("The service does not answer. If you try once more it is booked only once, even if it was booked already.")}</p>
+        <p>{t("No answer has come. If you try once more it is booked only once, even if it was booked already.")}</p>
       </div>
       <button class="button primary" type="button" onClick={() => ask(asking.request)}>
         {t("Try once more")}

@@ -10,10 +10,12 @@ export interface Requests {
   /** Null until they were read. */
   requests: readonly RequestView[] | null;
   fleet: FleetView | null;
+  /** When they were read last, as `performance.now()`. */
+  heard: number;
   failure: string;
 }
 
-const NOTHING: Requests = { requests: null, fleet: null, failure: "" };
+const NOTHING: Requests = { requests: null, fleet: null, heard: 0, failure: "" };
 
 /** Also how to read them at once. */
 export function useRequests(site: string, againMs = AGAIN_MS): Requests & { again: () => void } {
@@ -24,7 +26,7 @@ export function useRequests(site: string, againMs = AGAIN_MS): Requests & { agai
     let timer = 0;
     const read = async () => {
       await Promise.all([rest.requests(site), rest.fleet(site)]).then(
-        ([requests, fleet]) => current && setFound({ requests, fleet, failure: "" }),
+        ([requests, fleet]) => current && setFound({ requests, fleet, heard: performance.now(), failure: "" }),
         (error: Error) => current && setFound((before) => ({ ...before, failure: whyNotDone(error) })),
       );
       if (current) timer = window.setTimeout(() => void read(), againMs);

@@ -1,7 +1,7 @@
 // Moments of a building's clock, as people say them by their own.
-import { within } from "./request_words";
-import { t } from "../words/words";
+import { t, tn } from "../words/words";
 import { locale } from "../words/language";
+import type { FleetView, SiteView } from "../wire/types";
 
 /** A building's clock: what it shows (seconds), and how fast it goes beside people's. */
 export interface SiteClock {
@@ -9,12 +9,29 @@ export interface SiteClock {
   speed: number | "max";
 }
 
+/** As it was last read; null until then. */
+export function clockOf({ speed }: SiteView, fleet: FleetView | null): SiteClock | null {
+  return fleet === null ? null : { now: fleet.now_s, speed };
+}
+
 const SOON_S = 90 * 60;
 
+/** How long it is until a moment of it by people's own clock, seconds; by the building's where that just runs on. */
+export function ownSeconds(moment: number, { now, speed }: SiteClock): number {
+  return Math.max(0, moment - now) / (speed === "max" ? 1 : speed);
+}
+
+/** "in less than a minute", "in about 4 minutes" */
+export function within(seconds: number): string {
+  const minutes = Math.round(seconds / 60);
+  if (minutes < 1) return t("in less than a minute");
+  return tn("in about {count} minute", "in about {count} minutes", { count: minutes });
+}
+
 /** When a moment of it (seconds) is: "in about 4 minutes, at 14:35"; without the time of day where the building's clock just runs on. */
-export function when(moment: number, { now, speed }: SiteClock, today: Date): string {
-  if (speed === "max") return within(moment - now);
-  const left = Math.max(0, (moment - now) / speed);
+export function when(moment: number, clock: SiteClock, today: Date): string {
+  const left = ownSeconds(moment, clock);
+  if (clock.speed === "max") return within(left);
   const then = new Date(today.getTime() + 1000 * left);
   const at = t("at {time}", { time: timeOf(then) });
   const there = onDay(then, at, today);

@@ -1,6 +1,7 @@
 // What somebody fills in, and the request that it is.
 import { locale } from "../words/language";
 import { t } from "../words/words";
+import type { SiteClock } from "./when";
 
 export type Kind = "transport" | "deliver_message" | "go_to_room" | "escort";
 
@@ -12,7 +13,7 @@ export interface Wish {
   origin: string;
   destination: string;
   place: string;
-  /** Minutes from now, as typed; empty is any time. */
+  /** Minutes of the building's clock from now, as typed; empty is any time. */
   within: string;
 }
 
@@ -58,6 +59,13 @@ export function missing(wish: Wish, now: number): string {
 /** No clock of a building goes on beyond `LAST_S`; a round number while that is far off. */
 function mostMinutes(now: number): number {
   return Math.min(MOST_MINUTES, Math.floor((LAST_S - now) / 60));
+}
+
+/** Minutes are the building's, as in words: it says so where those are not people's own. */
+export function withinWhat({ speed }: SiteClock): string {
+  if (speed === 1) return t("Within minutes (optional)");
+  if (speed === "max") return t("Within minutes of the building's clock (optional)");
+  return t("Within minutes of the building's clock, which goes {speed} times as fast as yours (optional)", { speed: new Intl.NumberFormat(locale).format(speed) });
 }
 
 function endsMissing({ origin, destination }: Wish): string {

@@ -4,11 +4,11 @@ import type { FleetView, RequestKind } from "../wire/types";
 import { Confirming } from "./confirming";
 import { InWords } from "./in_words";
 import { exampleFor } from "./example";
-import { placeMeant, said } from "./places";
+import { placeInWords, placeMeant } from "./places";
 import { Refused } from "./refused";
 import { Unanswered } from "./unanswered";
 import type { RequestDocument, UseAsking } from "./use_asking";
-import { type Kind, missing, newName, NO_WISH, requestOf, type Wish } from "./wish";
+import { type Kind, missing, newName, NO_WISH, requestOf, type Wish, withinWhat } from "./wish";
 import type { SiteClock } from "./when";
 import { t } from "../words/words";
 
@@ -122,7 +122,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
             <PlaceField label={t("Where")} list={list} value={wish.place} onInput={(place) => fill({ place })} />
           )}
           <div class="field">
-            <label for="wish-within">{t("Within minutes (optional)")}</label>
+            <label for="wish-within">{withinWhat(clock)}</label>
             <input
               id="wish-within"
               type="text"
@@ -135,7 +135,7 @@ export function WishForm({ fleet, kinds, clock, asking, ask, forget }: WishFormP
         </div>
         <datalist id={list}>
           {fleet.places.map((place) => (
-            <option key={place} value={said(place)} />
+            <option key={place} value={placeInWords(place)} />
           ))}
         </datalist>
         <p class="mistake" role="alert">

@@ -1,6 +1,6 @@
 // A place, chosen by touch: its floor, then its number on a keypad or its name from a list.
 import { useState } from "preact/hooks";
-import { byFloor, said } from "../requests/places";
+import { byFloor, placeInWords } from "../requests/places";
 import { t } from "../words/words";
 
 interface PlacePadProps {
@@ -26,7 +26,7 @@ export function PlacePad({ places, here, floor: first, choose }: PlacePadProps) 
     <div class="pad">
       {here !== null && (
         <button class="button touch-button" type="button" onClick={() => choose(here)}>
-          {t("Here ({here})", { here: said(here) })}
+          {t("Here ({here})", { here: placeInWords(here) })}
         </button>
       )}
       {floors.size > 1 && (
@@ -66,7 +66,7 @@ export function PlacePad({ places, here, floor: first, choose }: PlacePadProps) 
         <div class="pad-places">
           {shown.map((place) => (
             <button key={place} class="button touch-button" type="button" onClick={() => choose(place)}>
-              {said(place)}
+              {placeInWords(place)}
             </button>
           ))}
           <p role="status" class="quiet">

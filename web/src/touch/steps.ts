@@ -1,5 +1,5 @@
 // What is asked one after the other at a robot's touch screen, and the wish that comes of it.
-import { said } from "../requests/places";
+import { placeInWords } from "../requests/places";
 import { isPointedAt, type Kind, NO_WISH, sayable, THIS, type Wish } from "../requests/wish";
 import { t } from "../words/words";
 
@@ -50,7 +50,7 @@ export function readBackOf(wish: Wish): string {
 }
 
 function deedOf({ kind, what, message, person, origin, destination, place }: Wish): string {
-  const way = t("from {origin} to {destination}", { origin: said(origin), destination: said(destination) });
+  const way = t("from {origin} to {destination}", { origin: placeInWords(origin), destination: placeInWords(destination) });
   switch (kind) {
     case "transport":
       return isPointedAt(what) ? t("bring this {way}", { way }) : t("bring {what} {way}", { what, way });
@@ -59,8 +59,8 @@ function deedOf({ kind, what, message, person, origin, destination, place }: Wis
         ? t("show you the way {way}", { way })
         : t("show {person} the way {way}", { person, way });
     case "deliver_message":
-      return t("tell {place} that “{message}”", { place: said(place), message });
+      return t("tell {place} that “{message}”", { place: placeInWords(place), message });
     case "go_to_room":
-      return t("come to {place}", { place: said(place) });
+      return t("come to {place}", { place: placeInWords(place) });
   }
 }

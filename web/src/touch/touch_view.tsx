@@ -9,7 +9,7 @@ import { InWords } from "../requests/in_words";
 import { Refused, refusedInShort } from "../requests/refused";
 import { notKnown, Unanswered } from "../requests/unanswered";
 import { fleets } from "../requests/fleets";
-import { said } from "../requests/places";
+import { placeInWords } from "../requests/places";
 import { type Asking, followed, type RequestDocument, useAsking } from "../requests/use_asking";
 import { useRequests } from "../requests/use_requests";
 import { isOver, wanted } from "../requests/request_words";
@@ -42,8 +42,8 @@ export function TouchView({ robot: name }: { robot: string }) {
     <section class="page touch">
       <div class="touch-head">
         <h1>{robotName(name)}</h1>
-        {robot?.here != null && <p class="quiet">{t("I am at {here}.", { here: said(robot.here) })}</p>}
-        <Connection />
+        {robot?.connected && robot.here !== null && failure === "" && <p class="quiet">{t("I am at {here}.", { here: placeInWords(robot.here) })}</p>}
+        <Connection but={robot?.connected === false ? t("I am not connected.") : ""} />
         {voices && (
           <button class="button" type="button" aria-pressed={soundOn.value} onClick={() => (soundOn.value = !soundOn.value)}>
             {t("Read aloud")}
@@ -176,7 +176,7 @@ function Start({ robot, service, choose }: StartProps) {
 }
 
 function heard(asking: Asking, readBack: string): string {
-  if (asking.phase === "booked") return t("All right. {request}.", { request: wanted(asking.request, said) });
+  if (asking.phase === "booked") return t("All right. {request}.", { request: wanted(asking.request) });
   if (asking.phase === "unknown") return notKnown();
   return asking.phase === "refused" ? refusedInShort(asking.by) : readBack;
 }
