@@ -115,7 +115,7 @@ function AtRobot({ site, robot }: { site: SiteView; robot: AskedRobotView }) {
         <InWords
           site={site.id}
           robot={robot.robot}
-          example={exampleFor(fleet.places, robot.here)}
+          example={exampleFor(fleet.places, robot.connected ? robot.here : null)}
           words={typed.words}
           typed={(words) => setTyped({ ...typed, words })}
           understood={(request, readBack) => setConfirmed({ request, readBack })}
