@@ -52,7 +52,9 @@ async def test_what_robots_do_is_followed_on_plan_and_chart(
     await service.fleets.submit(site, PARCEL, None)
     await expect(row(page, "ROBOT1")).to_contain_text("collects parcel at F1 101", timeout=LONG_MS)
     await expect(lane(page, "ROBOT1").filter(has_text="planned")).not_to_have_count(0)
-    await expect(row(page, "ROBOT1")).to_contain_text("It has the blue parcel aboard.", timeout=LONG_MS)
+    await expect(row(page, "ROBOT1")).to_contain_text(
+        "It has the blue parcel aboard.", timeout=LONG_MS
+    )
     await expect(page.get_by_text("1 that is over")).to_be_visible(timeout=LONG_MS)
     done = lane(page, "ROBOT1").filter(has_text="collects parcel at F1 101, from F1 charger1, done")
     await expect(done).to_have_count(1)
@@ -204,7 +206,9 @@ async def test_what_its_robots_ask_is_answered_there(service: Service, open_page
     )
     await expect(page.get_by_role("complementary", name="A robot asks")).to_have_count(0)
     await asked.get_by_role("button", name="YES").click()
-    await expect(row(page, "ROBOT1")).to_contain_text("It has the blue parcel aboard.", timeout=LONG_MS)
+    await expect(row(page, "ROBOT1")).to_contain_text(
+        "It has the blue parcel aboard.", timeout=LONG_MS
+    )
 
 
 async def test_on_a_phone_nothing_lies_over_what_may_be_answered(
