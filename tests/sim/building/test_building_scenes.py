@@ -104,11 +104,16 @@ def test_a_lane_through_a_cabin_that_does_not_end_there_is_told() -> None:
     ends = {
         "west": FloorPlace(x=stop.x - 1.2, y=stop.y),
         "east": FloorPlace(x=stop.x + 1.2, y=stop.y),
+        "inside": FloorPlace(x=stop.x, y=stop.y + 2.0),
+    }
+    (hall,) = {end for each in floor.lanes if "lift1" in each.between for end in each.between} - {
+        "lift1"
     }
     lanes = (
         *floor.lanes,
         Lane(between=("west", "east")),
-        Lane(between=("lift1", "west")),
+        Lane(between=(hall, "inside")),
+        Lane(between=("inside", "west")),
     )
     changed_floor = floor.model_copy(update={"places": {**floor.places, **ends}, "lanes": lanes})
     floors = {**document.floors, "F1": changed_floor}
