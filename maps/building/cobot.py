@@ -110,14 +110,14 @@ def import_cobot(
         },
     )
     imported = tidied(Imported(document))
-    return Imported(
-        imported.document, [*imported.notes, *_not_said(imported.document, list(floors))]
-    )
+    without = [floor for floor in floors if all(floor not in stops for stops in cabins.values())]
+    return Imported(imported.document, [*imported.notes, *_not_said(imported.document, without)])
 
 
-def _not_said(document: BuildingDocument, floors: Sequence[str]) -> Iterator[str]:
-    """What the files leave open, and what of it somebody has to say."""
-    if left_out := [floor for floor in floors if floor not in document.floors]:
+def _not_said(document: BuildingDocument, without: Sequence[str]) -> Iterator[str]:
+    """What the files leave open, and what of it somebody has to say; `without`: floors on which no
+    elevator was said to stop."""
+    if left_out := [floor for floor in without if floor not in document.floors]:
         yield (
             f"no elevator was said to stop on {list_names(left_out)}: left out with all that is "
             "there (--elevator says where one stops)"
@@ -136,7 +136,9 @@ def _floor(graph: _Graph, walls: VectorMap | None, cabins: Sequence[int]) -> Flo
         for each in graph.nodes
     }
     # Robots take no stairs; an edge may be there in both directions.
-    once = {_ends(each): each for each in reversed(graph.edges) if not each.has_stairs}
+    # What only one of them says of a door holds.
+    said_first = sorted(graph.edges, key=lambda each: not each.has_door)
+    once = {_ends(each): each for each in said_first[::-1] if not each.has_stairs}
     edges = [each for each in graph.edges if once.get(_ends(each)) is each]
     for each in edges:
         missing = [end for end in (each.s0_id, each.s1_id) if end not in at]

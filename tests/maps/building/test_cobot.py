@@ -58,6 +58,25 @@ def test_floors_that_nothing_joins_are_left_out() -> None:
     assert "no elevator was said to stop on 'F2': left out" in read.notes[1]
 
 
+def test_nobody_is_told_to_say_an_elevator_that_was_said() -> None:
+    """It leads to a part of the first floor that is cut off, and so does all beyond it."""
+    low = graph(edge(0, 1), edge(1, 2), edge(2, 3), edge(3, 4), edge(5, 6), nodes=7)
+    floors = {"F1": CobotFloor(low), "F2": CobotFloor(graph(edge(0, 1), nodes=2))}
+    read = import_cobot("lab", floors, {"lift": {"F1": 6, "F2": 0}})
+    assert list(read.document.floors) == ["F1"]
+    assert not any("no elevator was said" in each for each in read.notes)
+
+
+def test_a_door_that_one_of_two_directions_has_is_there() -> None:
+    for edges in (
+        [edge(0, 1), edge(1, 0, has_door=True)],
+        [edge(0, 1, has_door=True), edge(1, 0)],
+    ):
+        read = import_cobot("lab", {"F1": CobotFloor(graph(*edges, nodes=2))})
+        assert len(read.document.floors["F1"].doors) == 1
+        assert len(read.document.floors["F1"].lanes) == 1
+
+
 def test_an_elevator_has_stops_on_two_floors() -> None:
     with pytest.raises(WrongInputError, match="'lift' needs stops on two floors at least, and has"):
         import_cobot("lab", {"F1": CobotFloor(HALL), "F2": CobotFloor(HALL)}, {"lift": {"F1": 2}})
