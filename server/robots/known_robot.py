@@ -94,6 +94,7 @@ class KnownRobot:
         """The newest of this start of its program."""
         self._absence: asyncio.TimerHandle | None = None
         self._tasks: set[asyncio.Task[None]] = set()
+        self._is_closed = False
 
     @property
     def forgettable(self) -> bool:
@@ -202,6 +203,9 @@ class KnownRobot:
         for future in self._pictures.values():
             if not future.done():
                 future.set_exception(ConflictError(f"the robot '{self.name}' is not connected"))
+        if self._is_closed:
+            # It is the service that goes.
+            return
         reason = session.reason
         self._absence = asyncio.get_running_loop().call_later(
             self._times.absence_s, lambda: self._spawn(self._tell_lost(reason))
@@ -217,6 +221,7 @@ class KnownRobot:
         self._sink_sees_it = False
 
     def close(self) -> None:
+        self._is_closed = True
         self._cancel_absence()
         if self.session is not None:
             self.session.end_soon("the service is shutting down")

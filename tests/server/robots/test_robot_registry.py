@@ -412,6 +412,20 @@ async def test_a_robot_is_not_lost_while_a_newer_connection_is_being_made(
     assert sink.lost == []
 
 
+async def test_a_robot_is_not_lost_where_it_is_the_service_that_ends(
+    registry: RobotRegistry, sink: RecordingSink
+) -> None:
+    robot = PlayedRobot(registry)
+    await robot.greet(hello())
+    await robot.deliver(report(1))
+    registry.close()
+    await robot.serving
+    absence_over = asyncio.Event()
+    asyncio.get_running_loop().call_later(2 * QUICK.absence_s, absence_over.set)
+    await absence_over.wait()
+    assert sink.lost == []
+
+
 async def test_a_robot_whose_connection_ended_is_lost_after_a_while_and_only_once(
     registry: RobotRegistry, sink: RecordingSink
 ) -> None:
