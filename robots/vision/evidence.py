@@ -63,6 +63,13 @@ def gather(surface: Surface, surfaces: Surfaces) -> Evidence:
     return _weigh(surfaces, patch, inside, other, surface.top_z, surface.color)
 
 
+def may_tell_of(other: Surface, surface: Surface) -> bool:
+    """Whether anything of another surface lies where the evidence for a surface is gathered."""
+    rows, columns = _patch(surface.us, surface.vs)
+    beside = (rows.start <= other.vs) & (other.vs < rows.stop)
+    return bool((beside & (columns.start <= other.us) & (other.us < columns.stop)).any())
+
+
 def gather_under(
     knob: Surface, top_z: float, outlines: Sequence[Rectangle], surfaces: Surfaces
 ) -> Evidence:

@@ -298,11 +298,10 @@ def _supports(tops: Sequence[Top], surfaces: Surfaces) -> list[NDArray[np.float6
     """
     outlines = [each.fitted.outline(_MOST_HIDDEN_M) for each in tops]
     heights = np.array([each.surface.top_z for each in tops])
-    found = []
-    for outline, height in zip(outlines, heights, strict=True):
-        lower = (heights < height - _LEAST_HIGHER_M) & shapely.intersects(outline, outlines)
-        found.append(np.array([surfaces.heights.table_z, *heights[lower]]))
-    return found
+    lower = heights < heights[:, np.newaxis] - _LEAST_HIGHER_M
+    meeting = np.zeros_like(lower)
+    meeting[tuple(shapely.STRtree(outlines).query(outlines, predicate="intersects"))] = True
+    return [np.array([surfaces.heights.table_z, *heights[each]]) for each in lower & meeting]
 
 
 def _tracking_cost(top: Top, bottom_z: float, last: Spot | None) -> float:

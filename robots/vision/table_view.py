@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from types import MappingProxyType
 
 import cv2
 import numpy as np
@@ -16,7 +17,7 @@ from mend.robots.catalogue import Part
 from mend.robots.link.messages import Location
 from mend.robots.vision.blob import Blob
 from mend.robots.vision.color_model import ColorModel
-from mend.robots.vision.evidence import gather
+from mend.robots.vision.evidence import gather, may_tell_of
 from mend.robots.vision.head import HeadSighting
 from mend.robots.vision.height_map import IN_FRONT_M, HeightMap, measure_heights
 from mend.robots.vision.level_rectangle import Rectangle
@@ -98,7 +99,8 @@ def view_table(
         if len(seen.named) == len(known):
             break
         # It may be several, as high and of one colour, with something before them.
-        apart = _understand(seen.surfaces.with_pieces_apart([joined]), name, last_seen, image)
+        surfaces = seen.surfaces.with_pieces_apart([joined])
+        apart = _understand(surfaces, name, last_seen, image, seen.tops_away_from(joined))
         seen = apart if apart.half_seen > seen.half_seen else seen
     sightings = {match.part.name: sighting for match, sighting in seen.named}
     boxes = [box for match, sighting in seen.named for box in _boxes(match, sighting)]
@@ -136,8 +138,13 @@ class _Understood:
     """What is seen in a picture if it has these surfaces: the parts, and what is no part."""
 
     surfaces: Surfaces
+    tops: Sequence[Top]
     named: Sequence[tuple[Match, HeadSighting]]
     unknown: Sequence[Top]
+
+    def tops_away_from(self, surface: Surface) -> Mapping[Surface, Top]:
+        """Those that stay as they are, whatever a surface is taken for."""
+        return {each.surface: each for each in self.tops if not may_tell_of(surface, each.surface)}
 
     @property
     def half_seen(self) -> int:
@@ -150,9 +157,10 @@ def _understand(
     name: Callable[[Sequence[Top], Surfaces], tuple[list[Match], list[Top]]],
     last_seen: LastSeen,
     image: CameraImage,
+    known: Mapping[Surface, Top] = MappingProxyType({}),
 ) -> _Understood:
-    seen = [(each, gather(each, surfaces)) for each in surfaces.all]
-    tops = [Top(each, evidence, fit_any(evidence)) for each, evidence in seen]
+    all_tops = [known.get(each) or _top(each, surfaces) for each in surfaces.all]
+    tops = all_tops
     pieces: list[Top] = []
     while True:
         matches, unknown = name(tops, surfaces)
@@ -164,11 +172,16 @@ def _understand(
             found.append((match, _sighting(match, fitted, image)))
         kept, more = _without_pieces(found, last_seen)
         if not more:
-            return _Understood(surfaces, kept, [*unknown, *pieces])
+            return _Understood(surfaces, all_tops, kept, [*unknown, *pieces])
         # The names that they took may belong to something else that is seen.
         pieces += more
         taken = {id(each.surface) for each in more}
         tops = [each for each in tops if id(each.surface) not in taken]
+
+
+def _top(surface: Surface, surfaces: Surfaces) -> Top:
+    evidence = gather(surface, surfaces)
+    return Top(surface, evidence, fit_any(evidence))
 
 
 def _sighting(match: Match, fitted: Fitted, image: CameraImage) -> HeadSighting:
