@@ -42,8 +42,11 @@ async def test_pages_say_whether_somebody_is_at_them(tmp_path: Path) -> None:
         open_service(settings) as service,
         page(service, "anna", "active") as anna,
         page(service, "ben", "away") as ben,
-        page(service, "dan", "beside"),
+        page(service, "dan", "beside") as dan,
     ):
+        for each in (anna, dan):
+            # Refused, it changes nothing, and is answered once the service knows of the page.
+            await says(each, "asleep")
         said = await says(ben, "away")
         assert (said["type"], said["result"]) == ("result", {"away_after_s": 600})
         here = {"anna": "here", "ben": "away", "carl": "gone", "dan": "here"}
