@@ -66,7 +66,7 @@ def solved(problem: Problem, seconds: float = 6.0, **options: object) -> Solutio
 
 
 @pytest.mark.slow(2)
-@pytest.mark.parametrize("seed", sample((4, 8, 11), range(16)))
+@pytest.mark.parametrize("seed", sample((1, 4, 7, 8, 11), range(16)))
 def test_search_finds_what_the_exact_solver_proves(seed: int) -> None:
     problem = drawn_problem(seed)
     exact = solve_exactly(problem, seconds=600.0, clock=time.perf_counter)
