@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from types import MappingProxyType
 
 import cv2
 import numpy as np
@@ -93,7 +92,7 @@ def view_table(
     known = {name: part for name, part in parts.items() if name in model.names}
     namer, segmentation = Namer(known, model), model.segment(image.bgr)
     name = partial(namer.name, segmentation=segmentation, last_seen=last_seen.spots, wanted=wanted)
-    seen = _understand(find_surfaces(heights), name, last_seen, image)
+    seen = _understand(find_surfaces(heights), name, last_seen, image, known={})
     may_be_parts = partial(_may_be_parts, heights=heights, parts=list(known.values()))
     for joined in [each for each in seen.surfaces.all if any(map(may_be_parts, each.pieces))]:
         if len(seen.named) == len(known):
@@ -157,8 +156,9 @@ def _understand(
     name: Callable[[Sequence[Top], Surfaces], tuple[list[Match], list[Top]]],
     last_seen: LastSeen,
     image: CameraImage,
-    known: Mapping[Surface, Top] = MappingProxyType({}),
+    known: Mapping[Surface, Top],
 ) -> _Understood:
+    """`known` are the tops of surfaces that were measured already."""
     all_tops = [known.get(each) or _top(each, surfaces) for each in surfaces.all]
     tops = all_tops
     pieces: list[Top] = []

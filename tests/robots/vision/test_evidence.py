@@ -1,53 +1,49 @@
 """What says of a surface where it reaches."""
 
+import math
+
 import numpy as np
-import pytest
-from drawn_scene import TABLE_Z, DrawnScene, Resting
+from drawn_scene import PARTS, TABLE_Z, DrawnScene, Resting
+from sampled import sample
 
 from mend.robots.vision.evidence import Evidence, gather, may_tell_of
 from mend.robots.vision.height_map import measure_heights
-from mend.robots.vision.level_surfaces import Surface, Surfaces, find_surfaces
+from mend.robots.vision.level_surfaces import Surfaces, find_surfaces
 from mend.tasks.scene import Table
 
-FAR_OFF = {"pink_bar": Resting(0.6, 0.3), "yellow_bar": Resting(0.9, -0.5)}
-BESIDE = {"green_leg": Resting(0.68, -0.15)}
+PICTURES = sample(12, 200)
 
 
-def with_a_leg_behind_a_post(parts: dict[str, Resting]) -> tuple[Surfaces, Surface]:
-    """All surfaces of a picture, and the leg's, of which two pieces are seen."""
-    leg = {"blue_leg": Resting(0.62, -0.15)}
-    post = ((0.55, -0.14, TABLE_Z), (0.02, 0.02, 0.25))
-    heights = measure_heights(DrawnScene({**leg, **parts}, [post]).picture(), Table())
-    assert heights is not None
-    surfaces = find_surfaces(heights)
-    bluest = max(surfaces.all, key=lambda each: each.color[0] - each.color[1])
-    assert len(bluest.pieces) == 2
-    return surfaces, bluest
-
-
-@pytest.mark.parametrize("parts", [FAR_OFF, BESIDE, {**FAR_OFF, **BESIDE}])
-def test_what_a_surface_is_taken_for_changes_nothing_of_those_of_which_it_tells_nothing(
-    parts: dict[str, Resting],
-) -> None:
-    surfaces, joined = with_a_leg_behind_a_post(parts)
-    apart = surfaces.with_pieces_apart([joined])
-    others = [each for each in surfaces.all if each is not joined]
-    away = [each for each in others if not may_tell_of(joined, each)]
-    assert all(same(gather(each, surfaces), gather(each, apart)) for each in away)
-    assert len(away) >= sum(name in parts for name in FAR_OFF)
-
-
-def test_a_surface_tells_of_what_is_beside_it() -> None:
-    surfaces, joined = with_a_leg_behind_a_post({**FAR_OFF, **BESIDE})
-    told = [each for each in surfaces.all if each is not joined and may_tell_of(joined, each)]
-    apart = surfaces.with_pieces_apart([joined])
-    changed = [
-        each
-        for each in surfaces.all
-        if each is not joined and not same(gather(each, surfaces), gather(each, apart))
+def drawn_surfaces(seed: int) -> Surfaces:
+    """Those of all parts anywhere, near each other, behind posts that cut some of them."""
+    rng = np.random.default_rng(seed)
+    parts = {
+        name: Resting(rng.uniform(0.5, 0.8), rng.uniform(-0.4, 0.2), yaw=rng.uniform(0, math.pi))
+        for name in PARTS
+    }
+    posts = [
+        ((rng.uniform(0.42, 0.6), rng.uniform(-0.35, 0.2), TABLE_Z), (0.02, 0.02, 0.3))
+        for _ in range(3)
     ]
-    assert set(changed) <= set(told)
-    assert told
+    scene = DrawnScene(parts, posts, noise=rng.choice((0.0, 2.0)), seed=seed)
+    heights = measure_heights(scene.picture(), Table())
+    assert heights is not None
+    return find_surfaces(heights)
+
+
+def test_only_what_a_surface_may_tell_of_depends_on_what_that_is_taken_for() -> None:
+    changed, away = 0, 0
+    for seed in range(PICTURES):
+        surfaces = drawn_surfaces(seed)
+        for joined in [each for each in surfaces.all if each.pieces]:
+            apart = surfaces.with_pieces_apart([joined])
+            for other in [each for each in surfaces.all if each is not joined]:
+                if not same(gather(other, surfaces), gather(other, apart)):
+                    changed += 1
+                    assert may_tell_of(joined, other), seed
+                away += not may_tell_of(joined, other)
+    assert changed > 0
+    assert away > 0
 
 
 def same(one: Evidence, other: Evidence) -> bool:
