@@ -43,7 +43,7 @@ class SpeechStream:
         await self._send('{"type": "spoken"}')
 
     async def sound(self, pcm: bytes) -> None:
-        """Send sound: PCM16, mono, 16 kHz."""
+        """Send sound: PCM16, mono, 16 kHz; empty where some is missing."""
         await self._send(pcm)
 
     async def _send(self, message: str | bytes) -> None:

@@ -103,8 +103,8 @@ def asyncapi() -> dict[str, Any]:
             },
             "speech": {
                 "address": "/ws/speech",
-                "description": "A helper's microphone (binary: PCM16, mono, 16 kHz), and the "
-                "spoken conversations about questions.",
+                "description": "A helper's microphone (binary: PCM16, mono, 16 kHz; empty where "
+                "some is missing), and the spoken conversations about questions.",
                 "messages": _message_references("speech", sockets["speech"]),
                 "bindings": {"ws": {"query": SPEECH_QUERY}},
             },

@@ -13,6 +13,8 @@ SAMPLE_RATE_HZ = 16_000
 FRAME_SAMPLES = 320
 WAITING_FRAMES = 250
 """Five seconds: what nobody takes by then is dropped."""
+GAP = b""
+"""Instead of a frame: sound is missing here."""
 
 
 class SoundDevice(Protocol):
@@ -23,8 +25,25 @@ class SoundDevice(Protocol):
         ...
 
     def microphone(self) -> AsyncIterator[bytes]:
-        """Sound as it comes: PCM16, mono, 16 kHz."""
+        """Sound as it comes: PCM16, mono, 16 kHz; an empty frame where some is missing."""
         ...
+
+
+class WaitingSound:
+    """What a microphone gave and nobody has taken yet; where that is too much, a gap."""
+
+    def __init__(self) -> None:
+        self._frames: asyncio.Queue[bytes] = asyncio.Queue()
+
+    def keep(self, frame: bytes) -> None:
+        """Put a frame, or a gap, behind the others."""
+        waiting = self._frames.qsize()
+        if waiting <= WAITING_FRAMES:
+            self._frames.put_nowait(frame if waiting < WAITING_FRAMES else GAP)
+
+    async def take(self) -> bytes:
+        """The next frame, or a gap, once there is one."""
+        return await self._frames.get()
 
 
 class PortAudioDevice:
@@ -64,14 +83,12 @@ class PortAudioDevice:
 
     async def microphone(self) -> AsyncIterator[bytes]:
         loop = asyncio.get_running_loop()
-        frames: asyncio.Queue[bytes] = asyncio.Queue(WAITING_FRAMES)
+        waiting = WaitingSound()
 
-        def keep(frame: bytes) -> None:
-            if not frames.full():
-                frames.put_nowait(frame)
-
-        def came(data: Any, *_: Any) -> None:
-            loop.call_soon_threadsafe(keep, bytes(data))
+        def came(data: Any, _frames: int, _time: Any, status: Any) -> None:
+            if status.input_overflow:
+                loop.call_soon_threadsafe(waiting.keep, GAP)
+            loop.call_soon_threadsafe(waiting.keep, bytes(data))
 
         with (
             self._told_plainly(),
@@ -85,7 +102,7 @@ class PortAudioDevice:
             ),
         ):
             while True:
-                yield await frames.get()
+                yield await waiting.take()
 
     def _told_plainly(self) -> "_ToldPlainly":
         return _ToldPlainly(self._audio.PortAudioError)

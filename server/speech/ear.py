@@ -37,6 +37,8 @@ HEADER = struct.Struct("<dI")
 
 BREAK = 0
 """Instead of a number of bytes: what came before does not belong to what comes next."""
+GAP = 2**32 - 16
+"""Instead of a number of bytes: sound is missing here."""
 AFRESH: Mapping[Vocabulary, int] = {
     Vocabulary.ANSWER: 2**32 - 1,
     Vocabulary.PROMISE: 2**32 - 2,
@@ -75,7 +77,11 @@ class Ear(Protocol):
     """What one conversation listens with; never shared, as it adapts to voice and microphone."""
 
     def hear(self, pcm: bytes) -> None:
-        """Take sound (PCM16, mono, 16 kHz)."""
+        """Take sound (PCM16, mono, 16 kHz), some at least."""
+        ...
+
+    def skip(self) -> None:
+        """Sound is missing here: what is being said around it is no command."""
         ...
 
     def interrupt(self) -> None:
@@ -221,11 +227,21 @@ class ProcessEar:
     ) -> None:
         self._process = process
         self._give_back: Callable[[RecognizerProcess], Awaitable[None]] | None = give_back
+        self._skips = False
 
     def hear(self, pcm: bytes) -> None:
-        if self._process.behind_bytes <= MAX_BACKLOG_BYTES:
-            # Else what comes now would be answered seconds late; the gap makes it no command.
+        if self._process.behind_bytes > MAX_BACKLOG_BYTES:
+            # What comes now would be answered seconds late.
+            self.skip()
+        else:
             self._process.send(len(pcm), pcm)
+            self._skips = False
+
+    def skip(self) -> None:
+        # Once is enough until there is sound again.
+        if not self._skips:
+            self._process.send(GAP)
+            self._skips = True
 
     def interrupt(self) -> None:
         self._process.send(BREAK)

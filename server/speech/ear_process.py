@@ -14,7 +14,7 @@ from typing import BinaryIO
 
 from mend.server.speech.beam_search import GreedyTranscriber
 from mend.server.speech.decoding import Decoder
-from mend.server.speech.ear import AFRESH, BREAK, HEADER, EarReport
+from mend.server.speech.ear import AFRESH, BREAK, GAP, HEADER, EarReport
 from mend.server.speech.fused_decoder import FusedDecoder
 from mend.server.speech.moonshine import Moonshine
 from mend.server.speech.recognizer import Heard, Recognizer, SpeechBegan
@@ -63,9 +63,11 @@ def _converse(recognizer: Recognizer, sound: BinaryIO, reports: BinaryIO) -> Voc
         if size == BREAK:
             recognizer.interrupt()
             interruptions += 1
-            continue
-        for heard in recognizer.feed(sound.read(size)):
-            _tell(reports, report_of(heard, time.monotonic() - came_s, interruptions))
+        elif size == GAP:
+            recognizer.skip()
+        else:
+            for heard in recognizer.feed(sound.read(size)):
+                _tell(reports, report_of(heard, time.monotonic() - came_s, interruptions))
     return None
 
 

@@ -55,7 +55,9 @@ class Recognizer:
         self._lead: deque[bytes] = deque(maxlen=round(LEAD_S / FRAME_S))
         self._endpointer = Endpointer()
         self._levels_db: list[float] = []
-        """Of the frames of the utterance that goes on; empty between two."""
+        """Of the frames of the utterance that goes on, its lead included; empty between two."""
+        self._frames_since_gap: int | None = None
+        """None while nothing was missing."""
 
     def feed(self, pcm: bytes) -> Iterator[Heard]:
         """Take sound (PCM16, mono, 16 kHz) in pieces of any size."""
@@ -71,6 +73,12 @@ class Recognizer:
         self._rest = b""
         self._lead.clear()
         self._endpointer.interrupt()
+        self._frames_since_gap = None
+
+    def skip(self) -> None:
+        """Sound is missing here: an utterance around it is no command, whatever is left of it."""
+        self._rest = b""
+        self._frames_since_gap = 0
 
     def _take(self, frame: bytes) -> Iterator[Heard]:
         edge = self._endpointer.take(frame)
@@ -80,6 +88,8 @@ class Recognizer:
                 self._hear(before)
             yield SpeechBegan()
         self._lead.append(frame)
+        if self._frames_since_gap is not None:
+            self._frames_since_gap += 1
         if not self._levels_db:
             return
         self._hear(frame)
@@ -96,14 +106,24 @@ class Recognizer:
         self._decoder.take(frame)
 
     def _utterance(self) -> Utterance:
+        if self._has_gap():
+            return Utterance(None, None, words=True, hangover_s=self._hangover_s())
         hypothesis = self._decoder.end()
         sure = is_sure(hypothesis, self._levels_db)
         return Utterance(
             hypothesis.command if sure else None,
             hypothesis.phrase if sure else None,
             bool(hypothesis.words),
-            self._endpointer.quiet_frames * FRAME_S,
+            self._hangover_s(),
         )
+
+    def _has_gap(self) -> bool:
+        """Also where it begins at a gap: who knows what came before."""
+        since = self._frames_since_gap
+        return since is not None and since <= len(self._levels_db)
+
+    def _hangover_s(self) -> float:
+        return self._endpointer.quiet_frames * FRAME_S
 
 
 class _Noise:

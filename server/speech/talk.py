@@ -55,9 +55,16 @@ class Talk:
         self._start(self._pause())
 
     def hear(self, pcm: bytes) -> None:
-        """Take sound from the microphone; dropped unless it is listened to."""
-        if self._ear is not None and self._conversation.listens:
+        """Take sound from the microphone, empty where some is missing.
+
+        Dropped unless it is listened to.
+        """
+        if self._ear is None or not self._conversation.listens:
+            return
+        if pcm:
             self._ear.hear(pcm)
+        else:
+            self._ear.skip()
 
     async def end(self, reason: EndReason) -> None:
         """End it, unless it has ended."""

@@ -23,6 +23,7 @@ class ScriptedEar:
         self._reports: asyncio.Queue[EarReport | EarLostError] = asyncio.Queue()
         self._interruptions = 0
         self.heard = b""
+        self.gaps = 0
         self.closed = False
 
     def hear(self, pcm: bytes) -> None:
@@ -31,6 +32,9 @@ class ScriptedEar:
             self._tell(EarReport(kind="began", interruptions=self._interruptions))
         elif pcm[0] == 2:
             self._tell(self._utterance(self._hears.pop(0)))
+
+    def skip(self) -> None:
+        self.gaps += 1
 
     def interrupt(self) -> None:
         self._interruptions += 1

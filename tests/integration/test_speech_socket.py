@@ -136,6 +136,20 @@ async def test_sound_counts_only_while_it_listens(
     assert ears.opened[0].heard == BEGINS + ENDS
 
 
+async def test_an_empty_frame_is_a_gap_and_no_sound(
+    service: ServiceUnderTest, ears: ScriptedEars, question: DialogueView
+) -> None:
+    ears.hears.append("no")
+    async with microphone(service) as socket:
+        await exchange(socket, listen(question))
+        await socket.send(b"")
+        assert await exchange(socket, '{"type": "spoken"}') == {"type": "listening"}
+        await socket.send(b"")
+        assert await exchange(socket, BEGINS) == {"type": "hearing"}
+        assert (await exchange(socket, ENDS))["command"] == "no"
+    assert (ears.opened[0].heard, ears.opened[0].gaps) == (BEGINS + ENDS, 1)
+
+
 async def test_noise_is_no_answer(
     service: ServiceUnderTest, ears: ScriptedEars, question: DialogueView
 ) -> None:

@@ -135,3 +135,27 @@ async def test_an_ear_knows_nothing_of_the_conversation_before(voice: CommandVoi
     assert [each.kind for each in reports] == ["began", "utterance"]
     assert [each.interruptions for each in reports] == [0, 0]
     assert reports[-1].command is Command.YES
+
+
+@pytest.mark.slow
+async def test_an_ear_understands_nothing_round_a_gap_and_what_comes_after_it(
+    voice: CommandVoice,
+) -> None:
+    if isinstance(choose_ears(True, 1), NoEars):
+        pytest.skip("pocketsphinx is not installed")
+    ears = ProcessEars(1)
+    said = bytes(32_000) + pcm_of(await voice.render("yes i will")) + bytes(32_000)
+    middle = len(said) // 4 * 2
+    ear = await ears.open()
+    ear.hear(said[:middle])
+    ear.skip()
+    ear.hear(said[middle:])
+    ear.interrupt()
+    ear.hear(said)
+    async with asyncio.timeout(60):
+        reports = [await ear.report() for _ in range(4)]
+    await ear.close()
+    await ears.close()
+    assert [each.command for each in reports] == [None, None, None, Command.YES]
+    assert [each.words for each in reports] == [False, True, False, True]
+    assert [each.interruptions for each in reports] == [0, 0, 1, 1]

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 pytest.importorskip("pocketsphinx", reason="pocketsphinx is not installed")
 
@@ -105,6 +107,50 @@ def test_an_interrupted_utterance_is_never_told() -> None:
     recognizer.interrupt()
     assert heard(recognizer, silence(1.0)) == []
     assert decoder.sound == b""
+
+
+def heard_round_gap(at_s: float) -> Utterance:
+    """What becomes of a word of half a second, a second from the start, if some is missing."""
+    decoder = ToldDecoder("yes")
+    recognizer = Recognizer(decoder)
+    sound = word()
+    cut = round(at_s * SAMPLE_RATE_HZ) * 2
+    before = heard(recognizer, sound[:cut])
+    recognizer.skip()
+    utterance = [*before, *heard(recognizer, sound[cut:])][-1]
+    assert isinstance(utterance, Utterance)
+    return utterance
+
+
+@given(at_s=st.floats(0.9, 1.7))
+def test_what_has_a_gap_is_no_command(at_s: float) -> None:
+    utterance = heard_round_gap(at_s)
+    assert (utterance.command, utterance.phrase, utterance.words) == (None, None, True)
+    assert utterance.hangover_s == pytest.approx(0.3, abs=0.05)
+
+
+@given(at_s=st.floats(0.0, 1.0 - LEAD_S - 0.1))
+def test_a_gap_in_the_silence_before_does_no_harm(at_s: float) -> None:
+    assert heard_round_gap(at_s).command is Command.YES
+
+
+def test_what_begins_with_a_gap_is_no_command_even_where_nothing_came_before() -> None:
+    recognizer = Recognizer(ToldDecoder("yes"))
+    heard(recognizer, silence(1.0))
+    recognizer.interrupt()
+    recognizer.skip()
+    utterance = heard(recognizer, noise(0.5, 3000) + silence(0.5))[-1]
+    assert isinstance(utterance, Utterance)
+    assert utterance.command is None
+
+
+def test_what_is_said_after_what_had_a_gap_is_understood() -> None:
+    recognizer = Recognizer(ToldDecoder("yes"))
+    heard(recognizer, silence(1.0) + noise(0.2, 3000))
+    recognizer.skip()
+    said = heard(recognizer, noise(0.3, 3000) + silence(0.5) + word())
+    commands = [each.command for each in said if isinstance(each, Utterance)]
+    assert commands == [None, Command.YES]
 
 
 def test_digital_silence_gets_a_little_noise() -> None:

@@ -2,6 +2,7 @@
 import type { FromSpeaker, ToSpeaker } from "../wire/types";
 
 const RETRY_MS = 2_000;
+const SOUND_IS_MISSING = new ArrayBuffer(0);
 
 export interface SpeechSocket {
   readonly open: boolean;
@@ -20,10 +21,12 @@ export function connectSpeech(
   address.searchParams.set("helper", helper);
   let closed = false;
   let retry = 0;
+  let skipped = false;
   let socket = connect();
 
   function connect(): WebSocket {
     const made = new WebSocket(address);
+    skipped = false;
     made.onopen = () => receive.open();
     made.onmessage = (frame) => receive.message(JSON.parse(frame.data as string) as ToSpeaker);
     made.onclose = () => {
@@ -44,8 +47,15 @@ export function connectSpeech(
       if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
     },
     sound(pcm) {
-      // Sound that is late is of no use: a slow connection gets none rather than old sound.
-      if (socket.readyState === WebSocket.OPEN && socket.bufferedAmount < 64_000) socket.send(pcm);
+      if (socket.readyState !== WebSocket.OPEN) return;
+      // Sound that is late is of no use: a slow connection gets none, and is told so, rather than old sound.
+      if (socket.bufferedAmount >= 64_000) {
+        skipped = true;
+        return;
+      }
+      if (skipped) socket.send(SOUND_IS_MISSING);
+      skipped = false;
+      socket.send(pcm);
     },
     close() {
       closed = true;
