@@ -9,14 +9,15 @@ import numpy as np
 
 from mend.maps.building.building import Building
 from mend.maps.building.cabin import CABIN_M, cabin_walls, elevator_around, stop_of
-from mend.maps.building.clearance import clearance_m, is_clear
+from mend.maps.building.clearance import clearance_m
 from mend.maps.building.crossing import crossed_by
-from mend.maps.building.floor_grid import sampled
+from mend.maps.building.floor_grid import straightened
 from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 from mend.robots.base.body import BasePose
 from mend.robots.base.closed_ways import NO_WAYS, Closed, Lane
 from mend.robots.base.elevator_rides import ElevatorRides
-from mend.robots.base.lane_access import LaneAccess, nearest_access
+from mend.robots.base.floor_room import FloorRoom
+from mend.robots.base.lane_access import LaneAccess, lane_access
 from mend.robots.base.motion.surroundings import NOTHING, Points
 from mend.robots.base.open_door import Posts
 from mend.robots.base.ways import NO_WAITS, Ride
@@ -26,7 +27,6 @@ from mend.tasks.frames import Frame
 Point = tuple[float, float]
 
 _AROUND_M, _EVERY_M = 6.0, 0.15
-_ROUNDING_M = 1e-6
 _ON_LANE_M = 0.6
 """Who is farther from a lane is not on it."""
 _CLOSED_S = 1e5
@@ -69,14 +69,12 @@ class FloorWays:
         floor, start, goal = self._on_one_floor(here, to)
         first, last = self._first(floor, start, closed, goal), self._nearest(floor, goal, start)
         lanes = [(each.x_m, each.y_m) for each in self._along_lanes(floor, first, last, closed)]
-        if len(lanes) == 1 and self._is_wide(floor, start, goal):
-            return [self._frame.to_robot(*goal)]
-        points = [start, *first.corners, *lanes, *last.corners[::-1], goal]
-        if self._is_wide(floor, points[0], points[2]):
-            del points[1]
-        if len(points) > 2 and self._is_wide(floor, points[-3], points[-1]):
-            del points[-2]
-        return [self._frame.to_robot(*each) for each in points[1:]]
+        way: Sequence[Point] = [start, *first.corners, *lanes, *last.corners[::-1], goal]
+        # No more than one lane at either end is left where there is room straight on.
+        begins = len(way) if len(lanes) == 1 else len(first.corners) + 3
+        way = self._straight_on(floor, way, begins)
+        way = self._straight_on(floor, way[::-1], len(last.corners) + 3)[::-1]
+        return [self._frame.to_robot(*each) for each in way[1:]]
 
     def leads_round(self, here: BasePose, to: BasePose, closed: Closed) -> bool:
         """Whether a way leads to a pose on the same floor by nothing that is closed.
@@ -281,45 +279,16 @@ class FloorWays:
 
         Raises `CommandError`.
         """
-        ends = [point] if other is None else [point, other]
-        stops = [
-            stop
-            for stop in self._elevators.cabins_on(floor)
-            if min(math.dist(stop, each) for each in ends) >= CABIN_M
-        ]
-        walls, places = self._building.floors[floor].wall_segments, self._graphs[floor].places
-        found = nearest_access(point, places, walls, stops, self._needs_m)
-        return self._straight_onto_lane(floor, point, found, stops) if found.corners else found
+        return lane_access(self._graphs[floor], self._room(floor), point, other)
 
-    def _straight_onto_lane(
-        self, floor: str, point: Point, found: LaneAccess, stops: Sequence[Point]
-    ) -> LaneAccess:
-        """By a lane of the place, from where there is room straight on, outside of all cabins."""
-        graph, at = self._graphs[floor], (found.place.x_m, found.place.y_m)
-        onto = list[Point]()
-        for way in graph.ways:
-            if found.place.name in (way.a, way.b) and not way.one_way:
-                other = graph.place(way.b if way.a == found.place.name else way.a)
-                lane = sampled([at, (other.x_m, other.y_m)], _EVERY_M)[1:].tolist()
-                onto += [(x, y) for x, y in lane if self._is_wide(floor, point, (x, y))]
-        onto = [each for each in onto if all(math.dist(each, stop) >= CABIN_M for stop in stops)]
-        shortest = min(onto, key=lambda e: math.dist(e, at) + math.dist(e, point), default=None)
-        return found if shortest is None else LaneAccess(found.place, (shortest,))
+    def _straight_on(self, floor: str, way: Sequence[Point], count: int) -> Sequence[Point]:
+        """A way of which those of the first points that need not be passed are left out."""
+        begins = straightened(way[0], way[1:count], self._room(floor).is_wide)
+        return [way[0], *begins, *way[count:]]
 
-    def _is_wide(self, floor: str, a: Point, b: Point) -> bool:
-        """Whether the straight way is wide enough to leave the lanes for.
-
-        It may begin or end in a cabin, or beside one, and leads nearer to none than that.
-        """
-        walls = self._building.floors[floor].wall_segments
-        if not is_clear(a, b, walls, self._needs_m):
-            return False
-        around_m = CABIN_M + self._needs_m
-        return all(
-            (away_m := min(math.dist(a, stop), math.dist(b, stop))) < CABIN_M
-            or clearance_m(a, b, np.array([[*stop, *stop]])) >= min(around_m, away_m) - _ROUNDING_M
-            for stop in self._elevators.cabins_on(floor)
-        )
+    def _room(self, floor: str) -> FloorRoom:
+        cabins = tuple(self._elevators.cabins_on(floor))
+        return FloorRoom(self._building.floors[floor].wall_segments, cabins, self._needs_m)
 
     def _floor(self, pose: BasePose) -> str:
         floor = self._building.floor_at(pose.z)

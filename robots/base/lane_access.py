@@ -1,21 +1,32 @@
 """How one gets from anywhere on a floor to its lanes."""
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from mend.maps.building.cabin import CABIN_M, cabin_walls
 from mend.maps.building.clearance import distances_m, is_clear
 from mend.maps.building.crossing import crossed_by
-from mend.maps.building.floor_grid import CELL_M, FloorGrid, Matrix, Point, Reach, straightened
-from mend.maps.navigation import Place
+from mend.maps.building.floor_grid import (
+    CELL_M,
+    FloorGrid,
+    Matrix,
+    Point,
+    Reach,
+    sampled,
+    straightened,
+)
+from mend.maps.navigation import NavigationGraph, Place
+from mend.robots.base.floor_room import FloorRoom
 from mend.robots.execution.command_error import CommandError
 
 _LEAST_M = 2 * CELL_M
 """Nearer to a wall cells do not tell on which side of it they are."""
 _ROUNDING_M = 1e-6
+_EVERY_M = 0.15
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +35,28 @@ class LaneAccess:
 
     place: Place
     corners: Sequence[Point] = ()
+
+
+def lane_access(
+    graph: NavigationGraph, room: FloorRoom, point: Point, other: Point | None = None
+) -> LaneAccess:
+    """How one gets to the lanes of a floor, and to the cabin that either end of a way is in.
+
+    Round corners it is by a lane of the place that is found, from where there is room straight on.
+    Raises `CommandError` where no way leads to them.
+    """
+    cabins = room.cabins_of_others(*([point] if other is None else [point, other]))
+    found = nearest_access(point, graph.places, room.walls, cabins, room.needs_m)
+    if not found.corners:
+        return found
+    at = found.place.x_m, found.place.y_m
+    onto = [
+        each
+        for each in _on_lanes(graph, found.place)
+        if all(math.dist(each, cabin) >= CABIN_M for cabin in cabins) and room.is_wide(point, each)
+    ]
+    shortest = min(onto, key=lambda e: math.dist(e, at) + math.dist(e, point), default=None)
+    return found if shortest is None else LaneAccess(found.place, (shortest,))
 
 
 def nearest_access(
@@ -46,6 +79,15 @@ def nearest_access(
     if found is None:
         raise CommandError(f"no way leads from ({point[0]:.2f}, {point[1]:.2f}) to a lane")
     return found
+
+
+def _on_lanes(graph: NavigationGraph, place: Place) -> Iterator[Point]:
+    """Points on the lanes of a place by which one may come to it."""
+    for way in graph.ways:
+        if place.name in (way.a, way.b) and not way.one_way:
+            other = graph.place(way.b if way.a == place.name else way.a)
+            ends = [(place.x_m, place.y_m), (other.x_m, other.y_m)]
+            yield from ((x, y) for x, y in sampled(ends, _EVERY_M)[1:].tolist())
 
 
 def _is_in_cabin(place: Place, stops: Sequence[Point]) -> bool:
@@ -77,8 +119,8 @@ def _round_walls(
         nearest = _nearest(places, grid, reach)
         if nearest is not None:
             way = grid.way(reach, grid.cell((nearest.x_m, nearest.y_m)))
-            corners = straightened(point, way, barred, needed_m - CELL_M / 2)[:-1]
-            return LaneAccess(nearest, corners)
+            is_open = partial(is_clear, segments=barred, needs_m=needed_m - CELL_M / 2)
+            return LaneAccess(nearest, straightened(point, way, is_open)[:-1])
     return None
 
 

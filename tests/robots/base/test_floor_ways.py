@@ -117,6 +117,24 @@ def test_nobody_leaves_the_lanes_through_a_gap_that_is_too_narrow() -> None:
     assert (4.0, 0.0) in FloorWays(Building(document), Frame(), 1.0, 0.3).path(here, to)
 
 
+def test_who_comes_out_onto_a_lane_does_not_go_back_to_where_it_begins() -> None:
+    floor = {
+        "places": {
+            "behind": {"x": -1.8, "y": -0.5},
+            "ahead": {"x": 3.0, "y": -0.5},
+            "goal": {"x": 9.0, "y": -0.5},
+        },
+        "lanes": [{"between": ("behind", "ahead")}, {"between": ("ahead", "goal")}],
+        "walls": ((-5.0, 0.5, -0.6, 0.5), (0.6, 0.5, 9.0, 0.5)),
+    }
+    ways = FloorWays(Building(document_of("pocket", floor)), Frame(), 1.0, 0.3)
+    path = ways.path(BasePose(0.0, 1.5, 0.0), BasePose(9.0, -0.5, 0.0))
+    assert [y for _, y in path] == [-0.5] * len(path)
+    along = [x for x, _ in path]
+    assert along == sorted(along)
+    assert along[0] > -0.6
+
+
 @pytest.mark.parametrize("quarters", range(4))
 def test_walls_around_a_pose_are_known_also_where_nothing_is_seen(quarters: int) -> None:
     floor = {"walls": [[0.0, 1.0, 3.0, 1.0], [20.0, 0.0, 20.0, 9.0]]}
