@@ -82,7 +82,7 @@ class LegsAtWork:
             end.outcome is LegOutcome.ITEM_LOST and self._state.fleet.items[leg.booking].under_way
         )
         if lost:
-            why = f"it was gone when {leg.robot} was to {leg.action} it: {end.reason or 'lost'}"
+            why = f"it was gone when {leg.robot} came to {leg.place}: {end.reason or 'lost'}"
             self._giving_up.free(
                 leg, at, self._state.fleet.now_s, f"{leg.robot} does not have '{leg.booking}'"
             )

@@ -25,10 +25,40 @@ def untold(sentences: Sequence[str], files: Iterable[str] = ("clauses",)) -> lis
     return missing
 
 
-def pattern_of(key: str) -> str:
+def half_told(reasons: Sequence[str], typed: str = "") -> list[str]:
+    """Those of which something, however deep in them, has no text in one of the languages.
+
+    `typed`: what a person has said in words of their own.
+    """
+    found = []
+    for language in LANGUAGES:
+        keys = json.loads((TEXTS / language / "reasons.json").read_text())
+        patterns = [
+            re.compile(each, re.IGNORECASE)
+            for each in [re.escape(typed), *(pattern_of(key, named=True) for key in keys)]
+        ]
+        found += [each for each in reasons if not _is_told(each, patterns)]
+    return found
+
+
+def _is_told(text: str, patterns: Sequence[re.Pattern[str]]) -> bool:
+    fits = next((m for each in patterns if (m := each.fullmatch(text))), None)
+    if fits is None:
+        clauses = text.split("; ")
+        return len(clauses) > 1 and all(_is_told(each, patterns) for each in clauses)
+    within = fits.groupdict()
+    clauses = [within[name] for name in ("rest", "deed") if name in within]
+    clauses += within.get("list", "").split(", ") if "list" in within else []
+    return all(_is_told(each, patterns) for each in clauses)
+
+
+def pattern_of(key: str, *, named: bool = False) -> str:
+    """`named`: its groups are called as its fields are."""
     pieces = re.split(r"\{(\w+)\}", key)
-    any_clause = {"rest": ".+", "deed": ".+?"}
-    fields = (any_clause.get(name, "[^,;:?!]{1,80}?") for name in pieces[1::2])
+    any_clause = {"rest": ".+", "deed": ".+?", "list": "[^;:?!]+"}
+    fields = [any_clause.get(name, "[^,;:?!]{1,80}?") for name in pieces[1::2]]
+    if named:
+        fields = [f"(?P<{n}>{each})" for n, each in zip(pieces[1::2], fields, strict=True)]
     escaped = map(re.escape, pieces[::2])
     return next(escaped) + "".join(
         field + text for field, text in zip(fields, escaped, strict=True)

@@ -12,7 +12,7 @@ const SOURCES = join(WEB, "src");
 const TEXTS = join(WEB, "texts");
 /** The files of a language whose texts the code says; the others are the service's. */
 const SAID_HERE = ["answering", "console", "notices"];
-const OF_SERVICE = ["sentences", "clauses", "refusals"];
+const OF_SERVICE = ["sentences", "clauses", "refusals", "reasons"];
 const ALL_FILES = [...SAID_HERE, ...OF_SERVICE];
 /** From these everything is loaded before a question can be answered, and before a notice is shown. */
 const ANSWERING = ["begin.tsx", "question/queue_list.tsx"];

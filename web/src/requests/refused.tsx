@@ -2,7 +2,7 @@
 import type { Asking, RequestDocument } from "./use_asking";
 import { type SiteClock, when } from "./when";
 import { t } from "../words/words";
-import { Told } from "../words/told";
+import { ToldSentence } from "../words/told";
 
 interface RefusedProps {
   refused: Extract<Asking, { phase: "refused" }>;
@@ -16,12 +16,12 @@ export function Refused({ refused: { request, why, by }, clock, ask }: RefusedPr
       <div role="alert">
         <p class="mistake">{refusedInShort(by)}</p>
         {by !== null && <p>{t("No robot gets it done so soon.")}</p>}
-        {by === null && <p><Told text={asSentence(why)} /></p>}
+        {by === null && <p><ToldSentence text={why} /></p>}
       </div>
       {by !== null && (
         <details class="small">
           <summary>{t("Why not")}</summary>
-          <p><Told text={asSentence(why)} /></p>
+          <p><ToldSentence text={why} /></p>
         </details>
       )}
       {by !== null && (
@@ -36,9 +36,4 @@ export function Refused({ refused: { request, why, by }, clock, ask }: RefusedPr
 /** The same for whoever hears it. */
 export function refusedInShort(by: number | null): string {
   return by === null ? t("That cannot be done.") : t("That cannot be done by then.");
-}
-
-function asSentence(why: string): string {
-  const text = why.charAt(0).toUpperCase() + why.slice(1);
-  return /[.?!]$/.test(text) ? text : `${text}.`;
 }

@@ -18,10 +18,16 @@ export async function loadAnsweringWords(): Promise<void> {
   takeSentences(sentences, clauses);
 }
 
-/** What the other pages say, and why the service refuses what is done there. */
+/** What the other pages say, why the service refuses what is done there, and why a fleet does what it does. */
 export async function loadOtherWords(): Promise<void> {
-  const [refusals] = await Promise.all([wordsIn("refusals"), load("console")]);
+  const [refusals] = await Promise.all([wordsIn("refusals"), load("console"), loadReasons()]);
   takeClauses(refusals);
+}
+
+/** In English too: names and times are not as the service writes them. */
+async function loadReasons(): Promise<void> {
+  const [{ REASON_FIELDS, IN_ENGLISH }, reasons] = await Promise.all([import("../fleet/reason_words"), wordsIn("reasons")]);
+  takeClauses(language === "en" ? IN_ENGLISH : reasons, REASON_FIELDS);
 }
 
 async function load(file: string): Promise<void> {

@@ -13,7 +13,11 @@ interface Pattern {
   key: string;
   pattern: RegExp;
   text: string;
+  fields: FieldWords;
 }
+
+/** By what a field is called, how what fills it is said. */
+export type FieldWords = Readonly<Record<string, (value: string) => string>>;
 
 /** Take over `sentences` by their English text with fields, and `clauses`, which are also known filled in. */
 export function takeSentences(sentences: Words, clauses: Words): void {
@@ -23,12 +27,12 @@ export function takeSentences(sentences: Words, clauses: Words): void {
   takeClauses(clauses);
 }
 
-/** Take over more clauses: what was there before is looked for first. */
-export function takeClauses(clauses: Words): void {
+/** Take over more clauses, some of whose fields have words of their own: what was there before is looked for first. */
+export function takeClauses(clauses: Words, fields: FieldWords = {}): void {
   const known = new Set(patterns.map(({ key }) => key));
   const more = Object.entries(clauses).filter(([key]) => !known.has(key));
   for (const [key, text] of more) texts.set(key, String(text));
-  patterns = [...patterns, ...more.map(([key, text]) => ({ key, pattern: patternOf(key), text: String(text) }))];
+  patterns = [...patterns, ...more.map(([key, text]) => ({ key, pattern: patternOf(key), text: String(text), fields }))];
 }
 
 /** Remember what texts are made of; what was not heard of for long is forgotten. */
@@ -87,18 +91,33 @@ function sentence({ key, args }: WordedSentence): string | null {
 function phrase(text: string): string | null {
   const whole = texts.get(text);
   if (whole !== undefined) return whole;
-  for (const { pattern, text: template } of patterns) {
+  for (const { pattern, text: template, fields } of patterns) {
     const groups = pattern.exec(text)?.groups;
-    if (groups !== undefined) return filled(template, mapped(groups));
+    if (groups !== undefined) return filled(template, mapped(groups, fields));
   }
-  return null;
+  return several(text);
+}
+
+/** Clauses one after the other; null where one of them is only there in English. */
+function several(text: string): string | null {
+  const clauses = text.split("; ");
+  if (clauses.length === 1) return null;
+  const found = clauses.map(phrase);
+  return found.includes(null) ? null : found.join("; ");
+}
+
+/** A clause in turn, or several: those that are only there in English stay so. */
+function clausesIn(text: string): string {
+  return phrase(text) ?? text.split("; ").map((each) => phrase(each) ?? each).join("; ");
 }
 
 /** `rest`, `deed` and `wanted` are clauses in turn, and a part and a kind of issue may be called by words of the service's own; of what else fills a field only numbers are written otherwise. */
-function mapped(groups: Readonly<Record<string, string>>): Record<string, string> {
+function mapped(groups: Readonly<Record<string, string>>, fields: FieldWords): Record<string, string> {
   return Object.fromEntries(
     Object.entries(groups).map(([name, value]) => {
-      if (name === "rest" || name === "deed" || name === "wanted") return [name, phrase(value) ?? value];
+      const say = fields[name];
+      if (say !== undefined) return [name, say(value)];
+      if (name === "rest" || name === "deed" || name === "wanted") return [name, clausesIn(value)];
       if (name === "part") return [name, texts.get(value) ?? value];
       if (name === "issue") return [name, texts.get(value.replaceAll("_", " ")) ?? value];
       const decimals = /^-?\d+\.(\d+)$/.exec(value)?.[1];
@@ -107,12 +126,13 @@ function mapped(groups: Readonly<Record<string, string>>): Record<string, string
   );
 }
 
-/** What fills a field is short, but for `rest` and `deed`; a part may have its article. */
+/** What fills a field is short, but for `rest`, `deed` and `list`; a part may have its article. */
 function patternOf(key: string): RegExp {
   const escaped = key.replace(/[.*+?^$()|[\]\\]/g, "\\$&");
   const fields = escaped.replace(/\{(\w+)\}/g, (_, name: string) => {
     if (name === "rest") return "(?<rest>.+)";
     if (name === "deed") return "(?<deed>.+?)";
+    if (name === "list") return "(?<list>[^;:?!]+)";
     return `${name === "part" ? "(?:the )?" : ""}(?<${name}>[^,;:?!]{1,80}?)`;
   });
   return new RegExp(`^${fields}$`, "i");

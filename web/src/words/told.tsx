@@ -1,4 +1,5 @@
 // What the service or a robot says: where there is only the English text, screen readers are told so.
+import { sentence } from "../run/run_words";
 import { language } from "./language";
 import { translated } from "./said";
 import { t } from "./words";
@@ -9,7 +10,14 @@ export function Told({ text }: { text: string }) {
   return <span lang="en">{text}</span>;
 }
 
-/** The same between quotation marks, which are of the reader's language whatever the text is in. */
+/** A clause as a sentence of its own. */
+export function ToldSentence({ text }: { text: string }) {
+  const found = translated(text);
+  if (found !== null || language === "en") return <>{sentence(found ?? text)}</>;
+  return <span lang="en">{sentence(text)}</span>;
+}
+
+/** What is said between quotation marks, which are of the reader's language whatever the text is in. */
 export function Quoted({ text }: { text: string }) {
   const [before, after] = t("“{text}”", { text: "\n" }).split("\n");
   return (
