@@ -48,6 +48,14 @@ _ME = ("me", "us", "you")
 _ALONG = ("up", "down", "over", "along", "across", "back")
 """Said before a way, and no part of what is brought: "the coffee up to 305"."""
 
+_ALONE = [[each] for each in _ALONG]
+_BEGIN_THINGS = [
+    [each]
+    for each in ("the", "a", "an", "this", "that", "these", "those", "my", "our", "your", "it")
+]
+"""After "take back" and the like what is brought begins with one of these: "back issues" are a
+thing."""
+
 
 @dataclass(frozen=True, slots=True)
 class Understood:
@@ -139,6 +147,8 @@ def _is_way(words: Sequence[str]) -> bool:
 def _bringing(verb: str, words: Sequence[str]) -> Iterator[_Slots]:
     to_me = _plain_words(words[:1]) in (["me"], ["us"])
     words = _with_to_here(words[1:] if to_me else words)
+    if _plain_words(words[:1]) in _ALONE and _plain_words(words[1:2]) in _BEGIN_THINGS:
+        words = words[1:]
     what, way = _until_way(words)
     if not what:
         raise _MissingError(
