@@ -1,9 +1,14 @@
 """A browser that asks for German: the helper's way from the question to its end."""
 
 import pytest
-from console_in_browser import Stage
+from console_in_browser import OpenPage, Stage
+from office_with_fleet import open_office_with_fleet
 from played_dialogues import DETECTION
 from playwright.async_api import expect
+
+from mend.fleet.requests import Transport
+from mend.server.composition import Service
+from mend.server.fleets.request_refused import RequestRefusedError
 
 # One event loop for all tests of the console, and so one browser.
 pytestmark = pytest.mark.asyncio(loop_scope="session")
@@ -47,3 +52,19 @@ async def test_what_a_robot_says_in_words_of_its_own_is_marked_as_english(stage:
 async def test_a_browser_with_a_language_that_there_is_not_reads_english(stage: Stage) -> None:
     page = await stage.open_page(locale="fi-FI")
     await expect(page.get_by_text("No robot asks anything.")).to_be_visible()
+
+
+async def test_why_a_request_is_refused_is_told_with_times_and_places_as_people_know_them(
+    service: Service, open_page: OpenPage
+) -> None:
+    site = await open_office_with_fleet(service)
+    parcel = Transport(
+        name="paket", what="das Paket", origin="F1/101", destination="F1/106", latest_s=4.25
+    )
+    with pytest.raises(RequestRefusedError):
+        await service.fleets.submit(site, parcel, None)
+    page = await open_page("/requests", locale="de-DE", connected="Verbunden")
+    refused = page.get_by_role("listitem").filter(has_text="Abgelehnt")
+    await expect(refused).to_contain_text("ROBOT1 muss hinkommen, um „paket“ in F1 101 abzuholen")
+    await expect(refused).to_contain_text("bis 4 s muss begonnen sein, „paket“ in F1 101 abzuholen")
+    await expect(refused.locator("[lang=en]")).to_have_count(0)
