@@ -17,7 +17,7 @@ ROOT = Path(__file__).parent.parent
 BROWSER = "tests/e2e/"
 SOME_FAILED = 1
 """pytest's exit code where tests have failed, and nothing worse has happened."""
-WORKERS = ("-n", "6", "--dist", "worksteal")
+WORKERS = ("-n", "3", "--dist", "worksteal")
 """More at a time than two cores: tests in a browser, and of processes, wait a good deal."""
 
 
