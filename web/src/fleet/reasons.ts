@@ -102,4 +102,11 @@ export const REASONS: readonly string[] = [
   "said of the way between {place} and {goal}: open",
   "said of {elevator}: elevator dead",
   "said of {elevator}: open",
+  "found of the way between {place} and {goal}: blocked",
+  "found of the way between {place} and {goal}: door closed",
+  "found of the way between {place} and {goal}: open",
+  "found of {elevator}: elevator dead",
+  "found of {elevator}: open",
+  "'{request}' cannot be met: {rest}",
+  "by {time} s it would be possible",
 ];
