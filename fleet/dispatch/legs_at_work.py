@@ -70,7 +70,10 @@ class LegsAtWork:
         """A robot is there and begins with what it is to do. Raises `ConflictError`."""
         self._require_under_way(leg)
         self._state.apply(
-            StopBegun(leg.robot), f"{leg.robot} is at {leg.place}", (), own=leg.booking
+            StopBegun(leg.robot),
+            f"{leg.robot} has come to {leg.place} for '{leg.booking}'",
+            (),
+            own=leg.booking,
         )
         self._state.settle()
 
