@@ -1,7 +1,7 @@
 """The space of a floor around a point, in cells, and the ways through it."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
+
+from mend.maps.building.clearance import is_clear
 
 Point = tuple[float, float]
 Matrix = NDArray[np.float64]
@@ -30,15 +32,15 @@ def sampled(way: Sequence[Point], every_m: float = CELL_M) -> Matrix:
 
 
 def straightened(
-    start: Point, way: Sequence[Point], is_open: Callable[[Point, Point], bool]
+    start: Point, way: Sequence[Point], segments: Matrix, needs_m: float
 ) -> list[Point]:
-    """The corners of a way, up to its last: those between which the straight way is open."""
+    """The corners of a way through cells, up to its last: segments (n, 4) keep `needs_m` off."""
     corners, here = list[Point](), start
-    for number, point in enumerate(way):
+    for number, cell in enumerate(way):
         last = number + 1 == len(way)
-        if last or not is_open(here, way[number + 1]):
-            corners.append(point)
-            here = point
+        if last or not is_clear(here, way[number + 1], segments, needs_m):
+            corners.append(cell)
+            here = cell
     return corners
 
 

@@ -11,7 +11,6 @@ from mend.maps.building.building import Building
 from mend.maps.building.cabin import CABIN_M, cabin_walls, elevator_around, stop_of
 from mend.maps.building.clearance import clearance_m
 from mend.maps.building.crossing import crossed_by
-from mend.maps.building.floor_grid import straightened
 from mend.maps.navigation import NavigationGraph, Place, Way, WayKind
 from mend.robots.base.body import BasePose
 from mend.robots.base.closed_ways import NO_WAYS, Closed, Lane
@@ -27,6 +26,7 @@ from mend.tasks.frames import Frame
 Point = tuple[float, float]
 
 _AROUND_M, _EVERY_M = 6.0, 0.15
+_ROUNDING_M = 1e-6
 _ON_LANE_M = 0.6
 """Who is farther from a lane is not on it."""
 _CLOSED_S = 1e5
@@ -68,13 +68,19 @@ class FloorWays:
         """
         floor, start, goal = self._on_one_floor(here, to)
         first, last = self._first(floor, start, closed, goal), self._nearest(floor, goal, start)
-        lanes = [(each.x_m, each.y_m) for each in self._along_lanes(floor, first, last, closed)]
-        way: Sequence[Point] = [start, *first.corners, *lanes, *last.corners[::-1], goal]
-        # No more than one lane at either end is left where there is room straight on.
-        begins = len(way) if len(lanes) == 1 else len(first.corners) + 3
-        way = self._straight_on(floor, way, begins)
-        way = self._straight_on(floor, way[::-1], len(last.corners) + 3)[::-1]
-        return [self._frame.to_robot(*each) for each in way[1:]]
+        places = self._along_lanes(floor, first, last, closed)
+        lanes: Sequence[Point] = [(each.x_m, each.y_m) for each in places]
+        room = self._room(floor)
+        if len(lanes) == 1 and room.is_wide(start, goal):
+            return [self._frame.to_robot(*goal)]
+        lanes = _onwards(first.corners, lanes)
+        lanes = _onwards(last.corners, lanes[::-1])[::-1]
+        points = [start, *first.corners, *lanes, *last.corners[::-1], goal]
+        if room.is_wide(points[0], points[2]):
+            del points[1]
+        if len(points) > 2 and room.is_wide(points[-3], points[-1]):
+            del points[-2]
+        return [self._frame.to_robot(*each) for each in points[1:]]
 
     def leads_round(self, here: BasePose, to: BasePose, closed: Closed) -> bool:
         """Whether a way leads to a pose on the same floor by nothing that is closed.
@@ -281,11 +287,6 @@ class FloorWays:
         """
         return lane_access(self._graphs[floor], self._room(floor), point, other)
 
-    def _straight_on(self, floor: str, way: Sequence[Point], count: int) -> Sequence[Point]:
-        """A way of which those of the first points that need not be passed are left out."""
-        begins = straightened(way[0], way[1:count], self._room(floor).is_wide)
-        return [way[0], *begins, *way[count:]]
-
     def _room(self, floor: str) -> FloorRoom:
         cabins = tuple(self._elevators.cabins_on(floor))
         return FloorRoom(self._building.floors[floor].wall_segments, cabins, self._needs_m)
@@ -351,6 +352,14 @@ def _named_path(
     if not path:
         raise CommandError(f"no lane leads from {first.name} to {last.name}")
     return [graph.places[number] for number, _ in path]
+
+
+def _onwards(corners: Sequence[Point], lanes: Sequence[Point]) -> Sequence[Point]:
+    """The ends of lanes to pass: who comes out onto the first of them does not go back on it."""
+    if not corners or len(lanes) < 2:
+        return lanes
+    first = np.array([[*lanes[0], *lanes[1]]])
+    return lanes[1:] if clearance_m(corners[-1], corners[-1], first) < _ROUNDING_M else lanes
 
 
 def _away_m(place: Place, point: Point) -> float:

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -119,8 +118,8 @@ def _round_walls(
         nearest = _nearest(places, grid, reach)
         if nearest is not None:
             way = grid.way(reach, grid.cell((nearest.x_m, nearest.y_m)))
-            is_open = partial(is_clear, segments=barred, needs_m=needed_m - CELL_M / 2)
-            return LaneAccess(nearest, straightened(point, way, is_open)[:-1])
+            corners = straightened(point, way, barred, needed_m - CELL_M / 2)[:-1]
+            return LaneAccess(nearest, corners)
     return None
 
 

@@ -1,7 +1,6 @@
 """How people get round what stands between them and where they want to be."""
 
 import math
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,5 +29,4 @@ def way_on_foot(start: Point, goal: Point, segments: Matrix) -> list[Point]:
     if not grid.is_inside(goal) or not math.isfinite(grid.at(reach.metres, goal)):
         return []
     way = grid.way(reach, grid.cell(goal))
-    is_open = partial(is_clear, segments=segments, needs_m=RADIUS_M + KEEP_M / 2)
-    return straightened(start, way, is_open)
+    return straightened(start, way, segments, RADIUS_M + KEEP_M / 2)
