@@ -3,7 +3,7 @@ import { howLong } from "../building/standing";
 import { robotName } from "../question/fault_words";
 import { placeInWords } from "../requests/places";
 import { sentence } from "../run/run_words";
-import { said } from "../words/said";
+import { reasonInWords } from "../words/said";
 import type { Lane, TimelineItem } from "../run/timeline/lanes";
 import type { ErrandBegun, FleetRobot, LegBegun, LegEnded, PlannedStop } from "../wire/types";
 import type { FleetEvent } from "./fleet_past";
@@ -82,12 +82,12 @@ function doneBy(robot: string, events: readonly FleetEvent[], now: number): Grow
           going.look = event.came ? "errand" : "errand put-back";
           going.title += event.came
             ? t(", came there")
-            : t(", did not come there: {why}", { why: event.reason === null ? t("nobody knows why") : said(event.reason) });
+            : t(", did not come there: {why}", { why: event.reason === null ? t("nobody knows why") : reasonInWords(event.reason) });
         }
         going = null;
         break;
       case "fleet_told":
-        if (event.in_service === false) out = begin(event, t("out of service"), said(event.told), "out");
+        if (event.in_service === false) out = begin(event, t("out of service"), reasonInWords(event.told), "out");
         else if (event.in_service === true && out !== null) {
           out.end = event.at_s;
           out = null;
@@ -109,7 +109,7 @@ function endLeg(item: Growing, event: LegEnded): void {
   const [look, word] = OUTCOMES[event.outcome] ?? ["execution put-back", event.outcome];
   item.end = event.at_s;
   item.look = look;
-  item.title += event.reason === null ? `, ${word}` : `, ${word}: ${said(event.reason)}`;
+  item.title += event.reason === null ? `, ${word}` : `, ${word}: ${reasonInWords(event.reason)}`;
 }
 
 function legWord({ booking, place }: LegBegun): string {
@@ -173,8 +173,8 @@ function changeOf(event: FleetEvent): TimelineItem[] {
   const mark = (title: string, look: string): TimelineItem[] => [
     { seq: event.seq, start: event.at_s, end: event.at_s, word: "", title, look, node: null, parts: [] },
   ];
-  if (event.type === "plan_changed") return mark(said(event.reason), "change");
-  if (event.type === "fleet_told") return mark(said(event.told), "deed");
+  if (event.type === "plan_changed") return mark(reasonInWords(event.reason), "change");
+  if (event.type === "fleet_told") return mark(reasonInWords(event.told), "deed");
   return [];
 }
 
@@ -184,11 +184,11 @@ export function changeInWords(event: FleetEvent): readonly string[] {
     case "plan_changed": {
       const touched = [...event.robots.map(robotName), ...event.requests.map((each) => `“${each}”`)];
       const whom = touched.length === 0 ? [] : [t("It touches {touched}.", { touched: touched.join(", ") })];
-      return [sentence(said(event.reason)), ...whom, ...Object.entries(event.said).map(([who, why]) => sentence(`${robotName(who)}: ${said(why ?? "")}`))];
+      return [sentence(reasonInWords(event.reason)), ...whom, ...Object.entries(event.said).map(([who, why]) => sentence(`${robotName(who)}: ${reasonInWords(why ?? "")}`))];
     }
     case "fleet_told": {
       const who = event.finder === null ? authorInWords(event.author) : robotName(event.finder);
-      return [sentence(`${who}: ${said(event.told)}`)];
+      return [sentence(`${who}: ${reasonInWords(event.told)}`)];
     }
     default:
       return [];

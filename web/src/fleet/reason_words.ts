@@ -2,7 +2,7 @@
 import { howLong } from "../building/standing";
 import { robotName } from "../question/fault_words";
 import { placeInWords } from "../requests/places";
-import { said, type FieldWords } from "../words/said";
+import { reasonInWords, type FieldWords } from "../words/said";
 import type { Words } from "../words/words";
 import { wholeClock } from "./fleet_words";
 import { REASONS } from "./reasons";
@@ -19,7 +19,7 @@ export const REASON_FIELDS: FieldWords = {
   from: time,
   later: time,
   lasts: (seconds) => howLong(Math.ceil(Number(seconds))),
-  list: (each) => each.split(", ").map(said).join(", "),
+  list: (each) => each.split(", ").map(reasonInWords).join(", "),
 };
 
 /** The sentences in English: as they are, but for what a clock shows. */

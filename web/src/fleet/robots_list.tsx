@@ -12,7 +12,7 @@ import type { ErrandEnded, FleetRobot, FleetView, RequestView } from "../wire/ty
 import type { FleetEvent } from "./fleet_past";
 import { hasInWords, isAtInWords, sureInWords, wholeClock } from "./fleet_words";
 import { useRefusal } from "./use_refusal";
-import { said, whyNotDone } from "../words/said";
+import { reasonInWords, whyNotDone } from "../words/said";
 import { t } from "../words/words";
 
 interface RobotsListProps {
@@ -89,7 +89,7 @@ function Row({ fleet, requests, robot, seen, came, onShow, changed }: RowProps) 
 
 function errandInWords({ came, place, at, at_s, reason }: ErrandEnded): string {
   if (came) return t("It came to {place} at {time}.", { place: placeInWords(place), time: wholeClock(at_s) });
-  return t("It did not come to {place}: {why} It stopped near {near} at {time}.", { place: placeInWords(place), why: sentence(reason === null ? t("nobody knows why") : said(reason)), near: placeInWords(at), time: wholeClock(at_s) });
+  return t("It did not come to {place}: {why} It stopped near {near} at {time}.", { place: placeInWords(place), why: sentence(reason === null ? t("nobody knows why") : reasonInWords(reason)), near: placeInWords(at), time: wholeClock(at_s) });
 }
 
 function State({ robot, seen: { activity, unseen, where } }: { robot: FleetRobot; seen: SeenRobot }) {

@@ -9,7 +9,7 @@ import { Waits } from "./waits";
 import { type SiteClock, when } from "./when";
 import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
-import { ToldSentence } from "../words/told";
+import { ToldReason } from "../words/told";
 
 interface FollowedProps {
   request: RequestView;
@@ -41,7 +41,7 @@ export function Followed({ request, clock, changed, at }: FollowedProps) {
       <div role="status">
         <Waits request={request} at={at} />
       </div>
-      {reason !== null && <p class="small"><ToldSentence text={reason} /></p>}
+      {reason !== null && <p class="small"><ToldReason text={reason} /></p>}
       <p class="mistake" role="alert">
         {failure}
       </p>

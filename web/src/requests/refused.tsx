@@ -2,7 +2,7 @@
 import type { Asking, RequestDocument } from "./use_asking";
 import { type SiteClock, when } from "./when";
 import { t } from "../words/words";
-import { ToldSentence } from "../words/told";
+import { ToldReason } from "../words/told";
 
 interface RefusedProps {
   refused: Extract<Asking, { phase: "refused" }>;
@@ -16,12 +16,12 @@ export function Refused({ refused: { request, why, by }, clock, ask }: RefusedPr
       <div role="alert">
         <p class="mistake">{refusedInShort(by)}</p>
         {by !== null && <p>{t("No robot gets it done so soon.")}</p>}
-        {by === null && <p><ToldSentence text={why} /></p>}
+        {by === null && <p><ToldReason text={why} /></p>}
       </div>
       {by !== null && (
         <details class="small">
           <summary>{t("Why not")}</summary>
-          <p><ToldSentence text={why} /></p>
+          <p><ToldReason text={why} /></p>
         </details>
       )}
       {by !== null && (

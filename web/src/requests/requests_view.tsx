@@ -16,7 +16,7 @@ import { useRequests } from "./use_requests";
 import { WishForm } from "./wish_form";
 import { whyNotDone } from "../words/said";
 import { t } from "../words/words";
-import { ToldSentence } from "../words/told";
+import { ToldReason } from "../words/told";
 import "./requests.css";
 
 /** Whose robots are asked, where several sites take requests. */
@@ -131,7 +131,7 @@ function Row({ request, clock, changed }: { request: RequestView; clock: SiteClo
         <strong>{wanted(request)}</strong>
         <span class="small quiet">{expectation(request, clock)}</span>
         <Waits request={request} />
-        {reason !== null && <span class="small"><ToldSentence text={reason} /></span>}
+        {reason !== null && <span class="small"><ToldReason text={reason} /></span>}
         {failure !== "" && (
           <span class="mistake small" role="alert">
             {failure}

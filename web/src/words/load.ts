@@ -1,6 +1,6 @@
 // Brings the words of the reader's language, a file at a time: nobody waits for those of pages not looked at.
 import { language } from "./language";
-import { takeClauses, takeSentences } from "./said";
+import { takeClauses, takeReasons, takeSentences } from "./said";
 import { addWords, type Words } from "./words";
 
 /** Every file of texts by where it lies. */
@@ -27,7 +27,7 @@ export async function loadOtherWords(): Promise<void> {
 /** In English too: names and times are not as the service writes them. */
 async function loadReasons(): Promise<void> {
   const [{ REASON_FIELDS, IN_ENGLISH }, reasons] = await Promise.all([import("../fleet/reason_words"), wordsIn("reasons")]);
-  takeClauses(language === "en" ? IN_ENGLISH : reasons, REASON_FIELDS);
+  takeReasons(language === "en" ? IN_ENGLISH : reasons, REASON_FIELDS);
 }
 
 async function load(file: string): Promise<void> {

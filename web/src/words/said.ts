@@ -8,6 +8,7 @@ const REMEMBERED = 2_000;
 const texts = new Map<string, string>();
 const wordings = new Map<string, readonly WordedSentence[]>();
 let patterns: readonly Pattern[] = [];
+let reasons: readonly Pattern[] = [];
 
 interface Pattern {
   key: string;
@@ -27,12 +28,17 @@ export function takeSentences(sentences: Words, clauses: Words): void {
   takeClauses(clauses);
 }
 
-/** Take over more clauses, some of whose fields have words of their own: what was there before is looked for first. */
-export function takeClauses(clauses: Words, fields: FieldWords = {}): void {
+/** Take over more clauses: what was there before is looked for first. */
+export function takeClauses(clauses: Words): void {
   const known = new Set(patterns.map(({ key }) => key));
   const more = Object.entries(clauses).filter(([key]) => !known.has(key));
   for (const [key, text] of more) texts.set(key, String(text));
-  patterns = [...patterns, ...more.map(([key, text]) => ({ key, pattern: patternOf(key), text: String(text), fields }))];
+  patterns = [...patterns, ...more.map(([key, text]) => patternOf(key, String(text)))];
+}
+
+/** Take over why a fleet does what it does, and how what fills those sentences is said: no other text is looked for among them. */
+export function takeReasons(clauses: Words, fields: FieldWords): void {
+  reasons = Object.entries(clauses).map(([key, text]) => patternOf(key, String(text), fields));
 }
 
 /** Remember what texts are made of; what was not heard of for long is forgotten. */
@@ -87,37 +93,55 @@ function sentence({ key, args }: WordedSentence): string | null {
   return filled(template, values);
 }
 
-/** A text without known parts: itself a key, or what a pattern fits. */
-function phrase(text: string): string | null {
-  const whole = texts.get(text);
-  if (whole !== undefined) return whole;
-  for (const { pattern, text: template, fields } of patterns) {
-    const groups = pattern.exec(text)?.groups;
-    if (groups !== undefined) return filled(template, mapped(groups, fields));
-  }
-  return several(text);
+/** Why a fleet does something, as people say it; null where a part of it is only there in English. */
+export function translatedReason(text: string): string | null {
+  return reason(text) ?? several(text, reason);
 }
 
-/** Clauses one after the other; null where one of them is only there in English. */
-function several(text: string): string | null {
+/** The same, and the English one where there is no other. */
+export function reasonInWords(text: string): string {
+  return translatedReason(text) ?? text;
+}
+
+/** A text without known parts: itself a key, or what a pattern fits. */
+function phrase(text: string): string | null {
+  return texts.get(text) ?? fitting(text, patterns, (clause) => phrase(clause) ?? clause);
+}
+
+/** One clause of a reason. */
+function reason(text: string): string | null {
+  return fitting(text, reasons, reasonOrClauses) ?? phrase(text);
+}
+
+/** Clauses in turn: those that are only there in English stay so. */
+function reasonOrClauses(text: string): string {
+  return reason(text) ?? several(text, (each) => reason(each) ?? each) ?? text;
+}
+
+/** Clauses one after the other; null where there is only one, or one of them has no words. */
+function several(text: string, say: (clause: string) => string | null): string | null {
   const clauses = text.split("; ");
   if (clauses.length === 1) return null;
-  const found = clauses.map(phrase);
+  const found = clauses.map(say);
   return found.includes(null) ? null : found.join("; ");
 }
 
-/** A clause in turn, or several: those that are only there in English stay so. */
-function clausesIn(text: string): string {
-  return phrase(text) ?? text.split("; ").map((each) => phrase(each) ?? each).join("; ");
+/** What the first pattern that fits makes of a text; `say` has words for the clauses in it. */
+function fitting(text: string, among: readonly Pattern[], say: (clause: string) => string): string | null {
+  for (const { pattern, text: template, fields } of among) {
+    const found = pattern.exec(text);
+    if (found !== null) return filled(template, mapped(found.groups ?? {}, fields, say));
+  }
+  return null;
 }
 
 /** `rest`, `deed` and `wanted` are clauses in turn, and a part and a kind of issue may be called by words of the service's own; of what else fills a field only numbers are written otherwise. */
-function mapped(groups: Readonly<Record<string, string>>, fields: FieldWords): Record<string, string> {
+function mapped(groups: Readonly<Record<string, string>>, fields: FieldWords, clause: (text: string) => string): Record<string, string> {
   return Object.fromEntries(
     Object.entries(groups).map(([name, value]) => {
       const say = fields[name];
       if (say !== undefined) return [name, say(value)];
-      if (name === "rest" || name === "deed" || name === "wanted") return [name, clausesIn(value)];
+      if (name === "rest" || name === "deed" || name === "wanted") return [name, clause(value)];
       if (name === "part") return [name, texts.get(value) ?? value];
       if (name === "issue") return [name, texts.get(value.replaceAll("_", " ")) ?? value];
       const decimals = /^-?\d+\.(\d+)$/.exec(value)?.[1];
@@ -127,15 +151,15 @@ function mapped(groups: Readonly<Record<string, string>>, fields: FieldWords): R
 }
 
 /** What fills a field is short, but for `rest`, `deed` and `list`; a part may have its article. */
-function patternOf(key: string): RegExp {
+function patternOf(key: string, text: string, fields: FieldWords = {}): Pattern {
   const escaped = key.replace(/[.*+?^$()|[\]\\]/g, "\\$&");
-  const fields = escaped.replace(/\{(\w+)\}/g, (_, name: string) => {
+  const groups = escaped.replace(/\{(\w+)\}/g, (_, name: string) => {
     if (name === "rest") return "(?<rest>.+)";
     if (name === "deed") return "(?<deed>.+?)";
     if (name === "list") return "(?<list>[^;:?!]+)";
     return `${name === "part" ? "(?:the )?" : ""}(?<${name}>[^,;:?!]{1,80}?)`;
   });
-  return new RegExp(`^${fields}$`, "i");
+  return { pattern: new RegExp(`^${groups}$`, "i"), key, text, fields };
 }
 
 function capitalized(text: string): string {

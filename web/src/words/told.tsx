@@ -1,7 +1,7 @@
 // What the service or a robot says: where there is only the English text, screen readers are told so.
 import { sentence } from "../run/run_words";
 import { language } from "./language";
-import { translated } from "./said";
+import { translated, translatedReason } from "./said";
 import { t } from "./words";
 
 export function Told({ text }: { text: string }) {
@@ -10,9 +10,9 @@ export function Told({ text }: { text: string }) {
   return <span lang="en">{text}</span>;
 }
 
-/** A clause as a sentence of its own. */
-export function ToldSentence({ text }: { text: string }) {
-  const found = translated(text);
+/** Why a fleet does something, as a sentence. */
+export function ToldReason({ text }: { text: string }) {
+  const found = translatedReason(text);
   if (found !== null || language === "en") return <>{sentence(found ?? text)}</>;
   return <span lang="en">{sentence(text)}</span>;
 }
