@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 from uuid import UUID
 
@@ -138,8 +137,10 @@ class SpokenHelper:
                         sending.result()
             finally:
                 sending.cancel()
-                with suppress(asyncio.CancelledError):
-                    await sending
+                # Whoever is told to stop meanwhile stops, too.
+                (ended,) = await asyncio.gather(sending, return_exceptions=True)
+                if isinstance(ended, Exception):
+                    raise ended
 
     async def _send_sound(self, speech: SpeechStream) -> None:
         async for frame in self._device.microphone():

@@ -5,7 +5,7 @@ import shutil
 from collections.abc import AsyncIterator
 
 import pytest
-from scripted_ears import ToneVoice
+from scripted_ears import ScriptedEars, ToneVoice
 from service_under_test import ServiceUnderTest, serving
 from wav_device import WavDevice, pcm_of
 
@@ -101,6 +101,46 @@ async def test_a_service_without_speech_is_read_instead() -> None:
         await asyncio.gather(helping, return_exceptions=True)
     assert device.told[0].startswith("The service has no voice")
     assert device.told[1].startswith("The service hears nothing")
+
+
+class SlowToCloseDevice(WavDevice):
+    """A microphone that takes long to be let go of."""
+
+    def __init__(self, says: bytes) -> None:
+        super().__init__(says)
+        self.listened, self.closing = asyncio.Event(), asyncio.Event()
+        self.may_close = asyncio.Event()
+
+    def tell(self, line: str) -> None:
+        super().tell(line)
+        if line == "(listening)":
+            self.listened.set()
+
+    async def microphone(self) -> AsyncIterator[bytes]:
+        try:
+            async for frame in super().microphone():
+                yield frame
+        finally:
+            self.closing.set()
+            await self.may_close.wait()
+
+
+async def test_a_helper_is_stopped_also_while_a_conversation_ends() -> None:
+    device = SlowToCloseDevice(await ToneVoice().render("-"))
+    speech = SpeechAbilities(SpokenTexts(ToneVoice()), ScriptedEars())
+    async with serving(speech) as service, MendClient(service.url) as client, asyncio.timeout(60):
+        helping = asyncio.create_task(SpokenHelper(client, "anna", device, device.tell).run())
+        run = await service.runs.start_run(REQUEST)
+        view = await service.runs.raise_issue(run.id)
+        assert view.prompt is not None
+        await device.listened.wait()
+        await client.answer(view.dialogue, view.prompt.prompt, "yes", "ben")
+        await device.closing.wait()
+        helping.cancel()
+        await asyncio.sleep(0)
+        device.may_close.set()
+        await asyncio.gather(helping, return_exceptions=True)
+        assert helping.cancelled()
 
 
 @pytest.mark.slow
